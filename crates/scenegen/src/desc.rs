@@ -1,0 +1,329 @@
+//! The scene description: what an importer read, validated, as plain data.
+//!
+//! First value of the chain file → [`SceneDesc`] → effects → plan → program. Nothing here knows a file
+//! format or a device. Invariants, established by the importers and checked by [`SceneDesc::validate`]:
+//! every index is in range, every float finite, every triangle has three valid corners, attribute arrays
+//! are as long as `positions`, images have `width · height` texels.
+//!
+//! Space: right-handed, +Y up, metres, as glTF. Colours are linear Rec. 709 unless an image says sRGB.
+
+use glam::{Affine3A, Quat, Vec2, Vec3, Vec4};
+
+/// A scene, ready to be analysed.
+#[derive(Debug, Clone, Default)]
+pub struct SceneDesc {
+    /// File stem, used for the default name of the image.
+    pub name: String,
+    /// Decoded images, each once.
+    pub images: Vec<ImageDesc>,
+    /// Images together with their samplers.
+    pub textures: Vec<TextureDesc>,
+    /// Materials; meshes refer to them by index. Importers append a default where a file names none.
+    pub materials: Vec<MaterialDesc>,
+    /// Triangle meshes in object space.
+    pub meshes: Vec<MeshDesc>,
+    /// Meshes placed in the world.
+    pub instances: Vec<InstanceDesc>,
+    /// Punctual lights, in world space.
+    pub lights: Vec<LightDesc>,
+    /// Cameras, in world space.
+    pub cameras: Vec<CameraDesc>,
+    /// Light from infinitely far away.
+    pub environment: Option<EnvironmentDesc>,
+    /// What could not be taken over faithfully.
+    pub warnings: Vec<Warning>,
+}
+
+/// Something of the file that the image will lack or show differently.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// Where: a JSON path with the name in quotes, such as `materials/3 "Glass"`, or `line 12`.
+    pub place: String,
+    /// What, and what was done instead.
+    pub message: String,
+}
+
+/// A decoded image. Row 0 is the top row.
+#[derive(Debug, Clone)]
+pub struct ImageDesc {
+    /// Name or path, for messages and comments.
+    pub name: String,
+    /// Texels per row, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+    /// The texels, row by row.
+    pub texels: Texels,
+}
+
+/// Texels of an image.
+#[derive(Debug, Clone)]
+pub enum Texels {
+    /// Four bytes a texel, as stored in the file. Whether colour is sRGB-encoded is said by its use.
+    Rgba8(Vec<[u8; 4]>),
+    /// Linear, finite, non-negative (16-bit PNGs, HDR and EXR images).
+    RgbaF32(Vec<[f32; 4]>),
+}
+
+/// How coordinates outside `[0, 1]` are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Wrap {
+    /// Tiles.
+    #[default]
+    Repeat,
+    /// Tiles, every other one mirrored.
+    Mirror,
+    /// The border texel goes on.
+    Clamp,
+}
+
+/// How texels are combined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Filter {
+    /// The nearest texel.
+    Nearest,
+    /// Bilinear.
+    #[default]
+    Linear,
+}
+
+/// An image with a sampler.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextureDesc {
+    /// Index into [`SceneDesc::images`].
+    pub image: usize,
+    /// Along u and v.
+    pub wrap: [Wrap; 2],
+    /// Magnification filter (there is no minification filter yet).
+    pub filter: Filter,
+}
+
+/// Affine map of texture coordinates (KHR_texture_transform): `uv' = matrix · (u, v, 1)`, two rows.
+pub type UvTransform = [[f32; 3]; 2];
+
+/// A use of a texture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextureUse {
+    /// Index into [`SceneDesc::textures`].
+    pub texture: usize,
+    /// 0 for `TEXCOORD_0`, 1 for `TEXCOORD_1`.
+    pub uv_set: usize,
+    /// `None` is the identity.
+    pub transform: Option<UvTransform>,
+}
+
+/// A colour: a factor, times a texture's sRGB-encoded RGB where there is one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColorInput {
+    /// Linear factor.
+    pub factor: [f32; 3],
+    /// Colour texture; [`Texels::Rgba8`] is decoded from sRGB.
+    pub texture: Option<TextureUse>,
+}
+
+/// A number: a factor, times one channel of a texture where there is one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScalarInput {
+    /// Factor.
+    pub factor: f32,
+    /// Texture and the channel (0 red … 3 alpha) that is read, linear.
+    pub texture: Option<(TextureUse, usize)>,
+}
+
+/// A tangent-space normal map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NormalMap {
+    /// Texture, read as linear RGB, `2·rgb − 1`.
+    pub texture: TextureUse,
+    /// Factor on x and y.
+    pub scale: f32,
+}
+
+/// What alpha does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AlphaMode {
+    /// Alpha is ignored.
+    Opaque,
+    /// The surface is there where alpha ≥ the cutoff.
+    Mask(f32),
+    /// The surface is there with probability alpha.
+    Blend,
+}
+
+/// A material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialDesc {
+    /// Name in the file, or a made-up one.
+    pub name: String,
+    /// How it scatters light.
+    pub surface: SurfaceDesc,
+    /// Emitted radiance, strength included; factor 0 emits nothing.
+    pub emission: ColorInput,
+    /// What alpha does.
+    pub alpha_mode: AlphaMode,
+    /// Alpha (base colour's alpha for glTF, `d`/`map_d` for OBJ).
+    pub alpha: ScalarInput,
+    /// Normal map.
+    pub normal_map: Option<NormalMap>,
+    /// Seen, blocking and emitting from both sides.
+    pub double_sided: bool,
+}
+
+/// How a surface scatters light.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SurfaceDesc {
+    /// glTF 2.0, appendix B, with KHR_materials_specular, _ior, _transmission, _volume (thickness only).
+    MetallicRoughness(MetallicRoughness),
+    /// OBJ: Lambert plus normalised Phong.
+    Phong(Phong),
+    /// OBJ `illum` 4, 6, 7, 9 or `Tf`/`d` with refraction: a smooth dielectric.
+    Dielectric {
+        /// Index of refraction.
+        ior: f32,
+        /// Tint of transmitted light.
+        transmittance: [f32; 3],
+    },
+}
+
+/// glTF's metallic-roughness surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MetallicRoughness {
+    /// Base colour; multiplied by `COLOR_0` where the mesh has one.
+    pub base_color: ColorInput,
+    /// 0 dielectric … 1 metal (blue channel).
+    pub metallic: ScalarInput,
+    /// Perceptual roughness, α = roughness² (green channel).
+    pub roughness: ScalarInput,
+    /// Index of refraction of the dielectric, 1.5 by default. 0 means "Fresnel 1" (KHR_materials_ior).
+    pub ior: f32,
+    /// KHR_materials_specular: strength (alpha channel).
+    pub specular: ScalarInput,
+    /// KHR_materials_specular: colour of the reflection at normal incidence.
+    pub specular_color: ColorInput,
+    /// KHR_materials_transmission (red channel).
+    pub transmission: ScalarInput,
+    /// KHR_materials_volume with `thicknessFactor` > 0: transmitted rays refract into a solid.
+    /// Without it the surface is thin: what is transmitted goes straight on.
+    pub solid: bool,
+}
+
+/// OBJ's Lambert plus Phong surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phong {
+    /// `Kd`.
+    pub diffuse: ColorInput,
+    /// `Ks`; 0 when `illum` < 2.
+    pub specular: ColorInput,
+    /// `Ns`, at least 0.
+    pub exponent: ScalarInput,
+}
+
+/// A triangle mesh.
+#[derive(Debug, Clone, Default)]
+pub struct MeshDesc {
+    /// Name in the file.
+    pub name: String,
+    /// Index into [`SceneDesc::materials`].
+    pub material: usize,
+    /// Vertices.
+    pub positions: Vec<Vec3>,
+    /// Unit shading normals. Importers make flat ones (by splitting vertices) where a glTF file has none,
+    /// as its specification says, and likewise for OBJ.
+    pub normals: Vec<Vec3>,
+    /// Unit tangents with the bitangent's sign in w. Present only where the material has a normal map.
+    pub tangents: Option<Vec<Vec4>>,
+    /// `TEXCOORD_0` and `TEXCOORD_1`; (0, 0) is the image's top left.
+    pub uvs: [Option<Vec<Vec2>>; 2],
+    /// `COLOR_0`, linear.
+    pub colors: Option<Vec<Vec4>>,
+    /// Corners, counter-clockwise seen from the front.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A mesh placed in the world.
+#[derive(Debug, Clone)]
+pub struct InstanceDesc {
+    /// Name of the node, for messages.
+    pub name: String,
+    /// Index into [`SceneDesc::meshes`].
+    pub mesh: usize,
+    /// Object to world; may mirror and shear, is finite, composed in f64.
+    pub transform: Affine3A,
+}
+
+/// A punctual light (KHR_lights_punctual) in world space.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightDesc {
+    /// Name in the file.
+    pub name: String,
+    /// Its kind, with what belongs to it.
+    pub kind: LightKind,
+    /// Colour × intensity: W/(sr·m²)-like photometric units are taken as radiometric, one for one.
+    /// Radiant intensity for point and spot, irradiance at normal incidence for directional.
+    pub intensity: [f32; 3],
+}
+
+/// Kinds of punctual lights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LightKind {
+    /// Shines everywhere from a point.
+    Point {
+        /// World position.
+        position: Vec3,
+    },
+    /// Shines into a cone.
+    Spot {
+        /// World position.
+        position: Vec3,
+        /// Unit axis, pointing away from the light.
+        direction: Vec3,
+        /// Half-angle of full intensity, radians.
+        inner: f32,
+        /// Half-angle where it ends, radians; inner < outer ≤ π/2.
+        outer: f32,
+    },
+    /// Shines along one direction from infinitely far away.
+    Directional {
+        /// Unit direction in which the light travels.
+        direction: Vec3,
+    },
+}
+
+/// A camera in world space. It looks along −Z of `rotation`, +Y is up.
+#[derive(Debug, Clone)]
+pub struct CameraDesc {
+    /// Name of the node or the camera.
+    pub name: String,
+    /// Eye.
+    pub position: Vec3,
+    /// Orientation.
+    pub rotation: Quat,
+    /// Lens.
+    pub projection: Projection,
+}
+
+/// A camera's projection.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// Pinhole.
+    Perspective {
+        /// Vertical field of view in radians, in (0, π).
+        yfov: f32,
+    },
+    /// Parallel rays.
+    Orthographic {
+        /// Half the height of what is seen, in metres.
+        ymag: f32,
+    },
+}
+
+/// Light from infinitely far away: a latitude-longitude image, centre at +X, u growing towards +Z, top at +Y.
+#[derive(Debug, Clone)]
+pub struct EnvironmentDesc {
+    /// Index into [`SceneDesc::images`]; the image is [`Texels::RgbaF32`].
+    pub image: usize,
+    /// Factor on radiance.
+    pub strength: f32,
+    /// Turn about +Y in radians.
+    pub rotation: f32,
+}
