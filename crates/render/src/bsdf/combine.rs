@@ -1,0 +1,145 @@
+//! Two BSDFs on one surface: mixed by a weight, or added.
+
+use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use crate::domain::Domain;
+use crate::math::Vec3;
+use crate::surface::Surface;
+use crate::texture::ScalarSource;
+
+/// (1 − weight)·a + weight·b.
+#[derive(Clone, Copy, Debug)]
+pub struct Mix<A, B, W> {
+    /// What is seen at weight 0.
+    pub a: A,
+    /// What is seen at weight 1.
+    pub b: B,
+    /// Weight in [0, 1].
+    pub weight: W,
+}
+
+/// a + b. The caller sees to it that no more comes out than goes in.
+#[derive(Clone, Copy, Debug)]
+pub struct Sum<A, B, P> {
+    /// First summand.
+    pub a: A,
+    /// Second summand.
+    pub b: B,
+    /// Probability of sampling `b`, strictly between 0 and 1. It changes the noise, never the mean.
+    pub probability: P,
+}
+
+/// Factors on two BSDFs and the probability of sampling the second.
+struct Blend<F> {
+    factor_a: F,
+    factor_b: F,
+    probability_b: F,
+}
+
+impl<F: crate::domain::Real> Blend<F> {
+    #[inline(always)]
+    fn eval<D: Domain<F = F>>(&self, d: D, a: BsdfValue<D>, b: BsdfValue<D>) -> BsdfValue<D> {
+        let probability_a = d.lit(1.0) - self.probability_b;
+        BsdfValue {
+            value: a.value.scale(self.factor_a) + b.value.scale(self.factor_b),
+            pdf: d.fma(a.pdf, probability_a, b.pdf * self.probability_b),
+        }
+    }
+
+    /// One-sample multiple importance sampling: a direction from either, weighed by both.
+    #[inline(always)]
+    fn sample<D: Domain<F = F>, A: Bsdf<D>, B: Bsdf<D>>(
+        &self,
+        d: D,
+        surface: &Surface<D>,
+        wo: Vec3<F>,
+        u: [F; 3],
+        (a, b): (&A, &B),
+    ) -> BsdfSample<D> {
+        let one = d.lit(1.0);
+        let tiny = d.lit(1e-9);
+        let p = self.probability_b;
+        let second = d.lt(u[2], p);
+        let probability = d.max(d.select(second, p, one - p), tiny);
+        // The part of the interval that was chosen becomes the whole interval of the next choice.
+        let rest = d.select(second, u[2], u[2] - p) / probability;
+        let u = [u[0], u[1], d.min(rest, d.lit(1.0 - 0.5 / 16_777_216.0))];
+        let chosen = d.branch(second, || b.sample(d, surface, wo, u), || a.sample(d, surface, wo, u));
+        let factor = d.select(second, self.factor_b, self.factor_a);
+        let alone = chosen.weight.scale(factor / probability);
+        if !a.kind().union(b.kind()).scatters {
+            return BsdfSample { weight: alone, ..chosen };
+        }
+        let both = self.eval(d, a.eval(d, surface, wo, chosen.wi), b.eval(d, surface, wo, chosen.wi));
+        let possible = d.lt(d.lit(0.0), both.pdf) & d.lt(d.lit(0.0), chosen.pdf);
+        let inverse = one / d.select(possible, both.pdf, one);
+        let together = both.value.scale(inverse).only(d, possible);
+        BsdfSample {
+            wi: chosen.wi,
+            weight: <Vec3<F> as crate::domain::Bundle<D>>::choose(d, chosen.delta, alone, together),
+            pdf: d.select(chosen.delta, d.lit(0.0), both.pdf),
+            delta: chosen.delta,
+        }
+    }
+}
+
+impl<A, B, W> Mix<A, B, W> {
+    #[inline(always)]
+    fn blend<D: Domain>(&self, d: D, surface: &Surface<D>) -> Blend<D::F>
+    where
+        W: ScalarSource<D>,
+    {
+        let weight = self.weight.scalar(d, surface);
+        Blend { factor_a: d.lit(1.0) - weight, factor_b: weight, probability_b: weight }
+    }
+}
+
+impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, W: ScalarSource<D>> Bsdf<D> for Mix<A, B, W> {
+    #[inline(always)]
+    fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D> {
+        let (a, b) = (self.a.eval(d, surface, wo, wi), self.b.eval(d, surface, wo, wi));
+        self.blend(d, surface).eval(d, a, b)
+    }
+
+    #[inline(always)]
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+        self.blend(d, surface).sample(d, surface, wo, u, (&self.a, &self.b))
+    }
+
+    #[inline(always)]
+    fn kind(&self) -> BsdfKind {
+        self.a.kind().union(self.b.kind())
+    }
+}
+
+impl<A, B, P> Sum<A, B, P> {
+    #[inline(always)]
+    fn blend<D: Domain>(&self, d: D, surface: &Surface<D>) -> Blend<D::F>
+    where
+        P: ScalarSource<D>,
+    {
+        let one = d.lit(1.0);
+        Blend {
+            factor_a: one,
+            factor_b: one,
+            probability_b: self.probability.scalar(d, surface),
+        }
+    }
+}
+
+impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, P: ScalarSource<D>> Bsdf<D> for Sum<A, B, P> {
+    #[inline(always)]
+    fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D> {
+        let (a, b) = (self.a.eval(d, surface, wo, wi), self.b.eval(d, surface, wo, wi));
+        self.blend(d, surface).eval(d, a, b)
+    }
+
+    #[inline(always)]
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+        self.blend(d, surface).sample(d, surface, wo, u, (&self.a, &self.b))
+    }
+
+    #[inline(always)]
+    fn kind(&self) -> BsdfKind {
+        self.a.kind().union(self.b.kind())
+    }
+}

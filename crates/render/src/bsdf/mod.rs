@@ -1,0 +1,108 @@
+//! Bidirectional scattering distribution functions, one a file.
+//!
+//! Directions are unit vectors in the shading frame; `wo` is where the light goes (towards the eye), `wi` where
+//! it comes from, both pointing away from the surface. The frame lies on the side of `wo`: `wo.z` > 0. Whether
+//! that is the front of the surface is said by [`Surface::front`].
+//!
+//! To add a BSDF: write one file with a struct generic over its sources, implement [`Bsdf`], and name it in
+//! `program::BsdfNode`.
+
+mod combine;
+mod dielectric;
+mod diffuse;
+mod glossy;
+pub mod microfacet;
+mod phong;
+
+pub use combine::{Mix, Sum};
+pub use dielectric::{Dielectric, Interface, Solid, Thin, fresnel};
+pub use diffuse::{Black, Diffuse};
+pub use glossy::Glossy;
+pub use microfacet::Conductor;
+pub use phong::Phong;
+
+use crate::domain::{Bundle, Domain, choose_mask};
+use crate::math::{Color, Vec3};
+use crate::surface::Surface;
+
+/// A BSDF's value for a pair of directions.
+#[derive(Clone, Copy, Debug)]
+pub struct BsdfValue<D: Domain> {
+    /// f·|cos θᵢ|; 0 for delta lobes.
+    pub value: Color<D::F>,
+    /// Density, per steradian, with which `sample` proposes the direction; 0 for delta lobes.
+    pub pdf: D::F,
+}
+
+/// A sampled direction.
+#[derive(Clone, Copy, Debug)]
+pub struct BsdfSample<D: Domain> {
+    /// The direction.
+    pub wi: Vec3<D::F>,
+    /// f·|cos θᵢ| ÷ density; 0 where sampling failed.
+    pub weight: Color<D::F>,
+    /// Density per steradian; 0 where the direction came from a delta lobe.
+    pub pdf: D::F,
+    /// The direction came from a delta lobe.
+    pub delta: D::M,
+}
+
+/// What lobes a BSDF has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BsdfKind {
+    /// It has lobes that can be evaluated, so next-event estimation makes sense.
+    pub scatters: bool,
+    /// It has delta lobes.
+    pub delta: bool,
+    /// Some light passes through.
+    pub transmits: bool,
+}
+
+impl BsdfKind {
+    /// The lobes of both.
+    #[inline(always)]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            scatters: self.scatters | other.scatters,
+            delta: self.delta | other.delta,
+            transmits: self.transmits | other.transmits,
+        }
+    }
+}
+
+/// A BSDF.
+pub trait Bsdf<D: Domain> {
+    /// Value and density for a pair of directions.
+    fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D>;
+    /// A direction, from two numbers for the direction and one for the choice of a lobe.
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D>;
+    /// What lobes there are. Folds to a constant in concrete types, so that code for the rest disappears.
+    /// (A method, not an associated constant: boxed nodes need a dyn-compatible trait.)
+    fn kind(&self) -> BsdfKind;
+}
+
+impl<D: Domain> BsdfValue<D> {
+    /// Nothing.
+    #[inline(always)]
+    pub fn zero(d: D) -> Self {
+        Self { value: Vec3::splat(d.lit(0.0)), pdf: d.lit(0.0) }
+    }
+
+    /// This value where the mask holds, else nothing.
+    #[inline(always)]
+    pub fn only(self, d: D, mask: D::M) -> Self {
+        Self { value: self.value.only(d, mask), pdf: d.select(mask, self.pdf, d.lit(0.0)) }
+    }
+}
+
+impl<D: Domain> Bundle<D> for BsdfSample<D> {
+    #[inline(always)]
+    fn choose(d: D, mask: D::M, a: Self, b: Self) -> Self {
+        Self {
+            wi: Vec3::choose(d, mask, a.wi, b.wi),
+            weight: Vec3::choose(d, mask, a.weight, b.weight),
+            pdf: d.select(mask, a.pdf, b.pdf),
+            delta: choose_mask(d, mask, a.delta, b.delta),
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Cameras.
+//!
+//! [`Buffer::Camera`], twelve `f32`: eye; the vectors from the film's centre to the middles of its right and top
+//! edges; and the vector from the eye to the film's centre (perspective) or the direction of view (orthographic).
+
+use crate::domain::{Buffer, Domain};
+use crate::math::Vec3;
+use crate::math::vec3::vec3;
+use crate::surface::Ray;
+
+/// A camera: turns places on the film into rays.
+pub trait Camera<D: Domain> {
+    /// The ray through film coordinates in [−1, 1], x to the right, y up. Its direction is a unit vector.
+    fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D>;
+}
+
+/// A pinhole.
+#[derive(Clone, Copy, Debug)]
+pub struct Perspective;
+/// Parallel rays.
+#[derive(Clone, Copy, Debug)]
+pub struct Orthographic;
+
+#[inline(always)]
+fn vector<D: Domain>(d: D, first: u32) -> Vec3<D::F> {
+    let [x, y, z] = [0, 1, 2].map(|k| d.uniform_real(Buffer::Camera, first + k));
+    vec3(x, y, z)
+}
+
+#[inline(always)]
+fn on_film<D: Domain>(d: D, film: [D::F; 2]) -> Vec3<D::F> {
+    vector(d, 3).scale(film[0]) + vector(d, 6).scale(film[1])
+}
+
+impl<D: Domain> Camera<D> for Perspective {
+    #[inline(always)]
+    fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
+        let dir = (vector(d, 9) + on_film(d, film)).normalize(d);
+        Ray { org: vector(d, 0), dir, tmax: d.lit(f64::from(f32::MAX)) }
+    }
+}
+
+impl<D: Domain> Camera<D> for Orthographic {
+    #[inline(always)]
+    fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
+        let org = vector(d, 0) + on_film(d, film);
+        Ray { org, dir: vector(d, 9).normalize(d), tmax: d.lit(f64::from(f32::MAX)) }
+    }
+}

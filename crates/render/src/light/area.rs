@@ -1,0 +1,49 @@
+//! Emitting triangles.
+//!
+//! Record: kind, triangle, 1 if both sides emit. Points are sampled uniformly by area.
+
+use super::{LightKind, LightSample};
+use crate::domain::{Buffer, Domain};
+use crate::math::warp;
+use crate::surface::{Attributes, Surface, offset_point};
+use crate::texture::ColorSource;
+
+/// Triangles whose emission comes from sources of one kind.
+#[derive(Clone, Copy, Debug)]
+pub struct Area<E> {
+    /// Emitted radiance.
+    pub emission: E,
+    /// What `emission` reads.
+    pub attributes: Attributes,
+}
+
+impl<D: Domain, E: ColorSource<D>> LightKind<D> for Area<E> {
+    #[inline(always)]
+    fn sample(&self, d: D, record: D::U, from: &Surface<D>, u: [D::F; 3]) -> LightSample<D> {
+        let prim = d.load(Buffer::Lights, record + d.uint(1));
+        let both_sides = d.load(Buffer::Lights, record + d.uint(2));
+        let (b1, b2) = warp::triangle(d, [u[0], u[1]]);
+        let there = Surface::seen_from(d, self.attributes, prim, [b1, b2], from.point);
+        let towards = there.point - from.point;
+        let distance = d.max(towards.length(d), d.lit(1e-18));
+        let emits = there.front | d.eq_u(both_sides, d.uint(1));
+        let faces = d.lt(d.lit(0.0), there.cos_geometric);
+        let solid_angle = there.cos_geometric * there.area;
+        let safe = d.select(faces, solid_angle, d.lit(1.0));
+        LightSample {
+            wi: towards.scale(d.lit(1.0) / distance),
+            position: offset_point(d, there.point, there.error, there.geometric_normal, -towards),
+            infinite: d.truth(false),
+            radiance: self.emission.color(d, &there).only(d, emits & faces),
+            pdf: distance * distance / safe,
+            delta: d.truth(false),
+        }
+    }
+}
+
+/// Density, per steradian, with which [`Area`] proposes the point `hit` seen from `distance` away, given that its
+/// light was picked.
+#[inline(always)]
+pub fn pdf<D: Domain>(d: D, hit: &Surface<D>, distance: D::F) -> D::F {
+    distance * distance / d.max(hit.cos_geometric * hit.area, d.lit(1e-37))
+}

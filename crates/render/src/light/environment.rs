@@ -1,0 +1,116 @@
+//! An environment: a latitude-longitude image around the scene. Its centre is +X, u grows towards +Z, its top
+//! row is +Y.
+//!
+//! Texels are picked from an alias table by the integral of the bilinear image over each, so that every direction
+//! that shines can be sampled; the position within the texel is uniform.
+//!
+//! [`Buffer::Environment`]: [`HEADER`] words — width, height, first word of the image among the texels, strength
+//! (`f32`), cosine and sine of the rotation, the light's number, 0 — then for each texel three words: threshold
+//! (`f32`), alias, and the density (`f32`) over the unit square of image coordinates.
+
+use super::{ALIAS_ENTRY, Background, LightKind, LightSample, pick_probability, resolve_alias};
+use crate::domain::{Buffer, Domain};
+use crate::math::elementary::{atan2, sincos_turns};
+use crate::math::vec3::vec3;
+use crate::math::{Color, Vec3};
+use crate::surface::Surface;
+use crate::texture::{Bilinear, Clamp, Filtering, LinearFloat, Repeat, TexelFormat, Wrapping};
+
+/// Words before the alias table.
+pub const HEADER: u32 = 8;
+
+/// The environment. A scene has at most one.
+#[derive(Clone, Copy, Debug)]
+pub struct Environment;
+
+const PI: f64 = std::f64::consts::PI;
+
+/// Coordinates in the image of a unit direction, and the sine of the angle to +Y.
+#[inline(always)]
+fn to_image<D: Domain>(d: D, dir: Vec3<D::F>) -> ([D::F; 2], D::F) {
+    let cos = d.uniform_real(Buffer::Environment, 4);
+    let sin = d.uniform_real(Buffer::Environment, 5);
+    let (x, z) = (dir.x * cos - dir.z * sin, d.fma(dir.x, sin, dir.z * cos));
+    let sin_theta = d.sqrt(d.fma(x, x, z * z));
+    let u = d.fma(atan2(d, z, x), d.lit(0.5 / PI), d.lit(0.5));
+    let v = atan2(d, sin_theta, dir.y) * d.lit(1.0 / PI);
+    ([u, v], sin_theta)
+}
+
+/// The unit direction of image coordinates, and the sine of its angle to +Y.
+#[inline(always)]
+fn to_direction<D: Domain>(d: D, [u, v]: [D::F; 2]) -> (Vec3<D::F>, D::F) {
+    let cos = d.uniform_real(Buffer::Environment, 4);
+    let sin = d.uniform_real(Buffer::Environment, 5);
+    let (sin_phi, cos_phi) = sincos_turns(d, u - d.lit(0.5));
+    let (sin_theta, cos_theta) = sincos_turns(d, v * d.lit(0.5));
+    let (x, z) = (sin_theta * cos_phi, sin_theta * sin_phi);
+    (vec3(d.fma(x, cos, z * sin), cos_theta, z * cos - x * sin), sin_theta)
+}
+
+#[inline(always)]
+fn size<D: Domain>(d: D) -> (D::U, D::F, D::F) {
+    let width = d.uniform(Buffer::Environment, 0);
+    (width, d.to_real(width), d.to_real(d.uniform(Buffer::Environment, 1)))
+}
+
+#[inline(always)]
+fn radiance<D: Domain>(d: D, [u, v]: [D::F; 2]) -> Color<D::F> {
+    let (width, columns, rows) = size(d);
+    let first = d.uniform(Buffer::Environment, 2);
+    let texel = |x: D::F, y: D::F| {
+        let x = d.to_uint(Repeat::wrap(d, x, columns));
+        let y = d.to_uint(Clamp::wrap(d, y, rows));
+        LinearFloat::color(d, first + (y * width + x) * d.uint(LinearFloat::WORDS))
+    };
+    Bilinear::filter(d, u * columns, v * rows, texel, |a, b, t| a.lerp(b, t))
+        .scale(d.uniform_real(Buffer::Environment, 3))
+}
+
+/// Density per steradian, from the density over the image at texel `slot`.
+#[inline(always)]
+fn solid_angle_pdf<D: Domain>(d: D, slot: D::U, sin_theta: D::F) -> D::F {
+    let entry = slot * d.uint(ALIAS_ENTRY) + d.uint(HEADER + 2);
+    let over_image = d.load_real(Buffer::Environment, entry);
+    over_image / d.max(sin_theta * d.lit(2.0 * PI * PI), d.lit(1e-9))
+}
+
+impl<D: Domain> LightKind<D> for Environment {
+    #[inline(always)]
+    fn sample(&self, d: D, _: D::U, _: &Surface<D>, u: [D::F; 3]) -> LightSample<D> {
+        let (width, columns, rows) = size(d);
+        let one = d.lit(1.0);
+        let (x, y) = (u[0] * columns, u[1] * rows);
+        let (column, row) =
+            (d.min(d.floor(x), columns - one), d.min(d.floor(y), rows - one));
+        let slot = d.to_uint(row) * width + d.to_uint(column);
+        let texel = resolve_alias(d, Buffer::Environment, HEADER, slot, u[2]);
+        // texel = row·width + column; the quotient is exact enough below 2²⁴ texels and then put right.
+        let row = d.to_real(texel) / columns;
+        let row = d.min(d.floor(d.fma(d.lit(0.5), one / columns, row)), rows - one);
+        let column = d.to_real(texel - d.to_uint(row) * width);
+        let place = [(column + (x - d.floor(x))) / columns, (row + (y - d.floor(y))) / rows];
+        let (wi, sin_theta) = to_direction(d, place);
+        LightSample {
+            wi,
+            position: wi,
+            infinite: d.truth(true),
+            radiance: radiance(d, place),
+            pdf: solid_angle_pdf(d, texel, sin_theta),
+            delta: d.truth(false),
+        }
+    }
+
+    #[inline(always)]
+    fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
+        let (place, sin_theta) = to_image(d, dir);
+        let (width, columns, rows) = size(d);
+        let column = d.to_uint(Clamp::wrap(d, d.floor(place[0] * columns), columns));
+        let row = d.to_uint(Clamp::wrap(d, d.floor(place[1] * rows), rows));
+        let pick = pick_probability(d, d.uniform(Buffer::Environment, 6));
+        Some(Background {
+            radiance: radiance(d, place),
+            pdf: solid_angle_pdf(d, row * width + column, sin_theta) * pick,
+        })
+    }
+}

@@ -1,0 +1,245 @@
+//! Lights: what next-event estimation samples, and what rays that miss everything see.
+//!
+//! A scene's kinds of lights are a type list, `(A, (B, ()))`, so that a renderer contains the kinds that its
+//! scene has and no others. One light is picked from an alias table by its power, then sampled by its kind.
+//!
+//! [`Buffer::LightAlias`]: word 0 the number of lights n, then for each light three words: threshold (`f32`), alias,
+//! and the probability (`f32`) with which it is picked. [`Buffer::Lights`]: [`RECORD`] words a light; word 0 is the
+//! kind's position in the list, the rest is the kind's affair.
+
+mod area;
+pub mod environment;
+mod punctual;
+
+pub use area::{Area, pdf as area_pdf};
+pub use environment::Environment;
+pub use punctual::{Directional, Point, Spot};
+
+use crate::domain::{Buffer, Bundle, Domain, choose_mask};
+use crate::math::{Color, Vec3};
+use crate::surface::Surface;
+
+/// Words of a light's record.
+pub const RECORD: u32 = 16;
+/// Words of an entry of an alias table.
+pub const ALIAS_ENTRY: u32 = 3;
+/// In [`Buffer::TriangleLights`]: the triangle is no light.
+pub const NO_LIGHT: u32 = u32::MAX;
+
+/// Light arriving at a point from one sampled direction.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample<D: Domain> {
+    /// Unit direction towards the light.
+    pub wi: Vec3<D::F>,
+    /// The place it comes from; unused where `infinite`.
+    pub position: Vec3<D::F>,
+    /// It comes from infinitely far away.
+    pub infinite: D::M,
+    /// Arriving radiance; for delta lights, irradiance at normal incidence.
+    pub radiance: Color<D::F>,
+    /// Density per steradian; 1 for delta lights.
+    pub pdf: D::F,
+    /// No BSDF sample can find this light.
+    pub delta: D::M,
+}
+
+impl<D: Domain> Bundle<D> for LightSample<D> {
+    #[inline(always)]
+    fn choose(d: D, mask: D::M, a: Self, b: Self) -> Self {
+        Self {
+            wi: Vec3::choose(d, mask, a.wi, b.wi),
+            position: Vec3::choose(d, mask, a.position, b.position),
+            infinite: choose_mask(d, mask, a.infinite, b.infinite),
+            radiance: Vec3::choose(d, mask, a.radiance, b.radiance),
+            pdf: d.select(mask, a.pdf, b.pdf),
+            delta: choose_mask(d, mask, a.delta, b.delta),
+        }
+    }
+}
+
+/// Radiance from infinitely far away, and the density with which sampling proposes its direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Background<D: Domain> {
+    /// Radiance.
+    pub radiance: Color<D::F>,
+    /// Density per steradian, the pick of the light included.
+    pub pdf: D::F,
+}
+
+/// A kind of light.
+pub trait LightKind<D: Domain> {
+    /// Samples the light whose record starts at word `record` for the point `from`.
+    fn sample(&self, d: D, record: D::U, from: &Surface<D>, u: [D::F; 3]) -> LightSample<D>;
+
+    /// What a ray in the unit direction `dir` that hits nothing sees of lights of this kind.
+    fn background(&self, _: D, _dir: Vec3<D::F>) -> Option<Background<D>> {
+        None
+    }
+}
+
+/// The kind wanted from a list, or from the rest of one that starts at position `first` of the whole.
+#[derive(Clone, Copy, Debug)]
+pub struct KindNumber<U> {
+    kind: U,
+    first: u32,
+}
+
+impl<U: crate::domain::Unsigned> KindNumber<U> {
+    #[inline(always)]
+    fn is_first<D: Domain<U = U>>(self, d: D) -> D::M {
+        d.eq_u(self.kind, d.uint(self.first))
+    }
+    #[inline(always)]
+    fn in_rest(self) -> Self {
+        Self { first: self.first + 1, ..self }
+    }
+}
+
+/// A list of kinds of lights.
+pub trait LightKinds<D: Domain> {
+    /// There are no lights at all.
+    fn is_empty(&self) -> bool;
+    /// Samples a light whose kind's number is `kind`.
+    fn sample(
+        &self,
+        d: D,
+        kind: KindNumber<D::U>,
+        record: D::U,
+        from: &Surface<D>,
+        u: [D::F; 3],
+    ) -> LightSample<D>;
+    /// The background of the first kind that has one.
+    fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>>;
+}
+
+impl<D: Domain> LightKinds<D> for () {
+    #[inline(always)]
+    fn is_empty(&self) -> bool {
+        true
+    }
+    #[inline(always)]
+    fn sample(
+        &self,
+        d: D,
+        _: KindNumber<D::U>,
+        _: D::U,
+        _: &Surface<D>,
+        _: [D::F; 3],
+    ) -> LightSample<D> {
+        let zero = Vec3::splat(d.lit(0.0));
+        LightSample {
+            wi: zero,
+            position: zero,
+            infinite: d.truth(true),
+            radiance: zero,
+            pdf: d.lit(1.0),
+            delta: d.truth(true),
+        }
+    }
+    #[inline(always)]
+    fn background(&self, _: D, _: Vec3<D::F>) -> Option<Background<D>> {
+        None
+    }
+}
+
+impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
+    #[inline(always)]
+    fn is_empty(&self) -> bool {
+        false
+    }
+    #[inline(always)]
+    fn sample(
+        &self,
+        d: D,
+        kind: KindNumber<D::U>,
+        record: D::U,
+        from: &Surface<D>,
+        u: [D::F; 3],
+    ) -> LightSample<D> {
+        if self.1.is_empty() {
+            // The last kind needs no test.
+            return self.0.sample(d, record, from, u);
+        }
+        d.branch(
+            kind.is_first(d),
+            || self.0.sample(d, record, from, u),
+            || self.1.sample(d, kind.in_rest(), record, from, u),
+        )
+    }
+    #[inline(always)]
+    fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
+        self.0.background(d, dir).or_else(|| self.1.background(d, dir))
+    }
+}
+
+/// Kinds in boxes: the interpreted renderer's list.
+impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
+    fn is_empty(&self) -> bool {
+        self.is_empty()
+    }
+    fn sample(
+        &self,
+        d: D,
+        kind: KindNumber<D::U>,
+        record: D::U,
+        from: &Surface<D>,
+        u: [D::F; 3],
+    ) -> LightSample<D> {
+        match self {
+            [] => ().sample(d, kind, record, from, u),
+            [last] => last.sample(d, record, from, u),
+            [head, tail @ ..] => d.branch(
+                kind.is_first(d),
+                || head.sample(d, record, from, u),
+                || tail.sample(d, kind.in_rest(), record, from, u),
+            ),
+        }
+    }
+    fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
+        self.iter().find_map(|kind| kind.background(d, dir))
+    }
+}
+
+/// Picks a light with `u[0]` and samples it with the other three numbers. The density includes the pick.
+#[inline(always)]
+pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
+    d: D,
+    lights: &L,
+    from: &Surface<D>,
+    u: [D::F; 4],
+) -> LightSample<D> {
+    let count = d.to_real(d.uniform(Buffer::LightAlias, 0));
+    let place = u[0] * count;
+    let slot = d.min(d.floor(place), count - d.lit(1.0));
+    let light = resolve_alias(d, Buffer::LightAlias, 1, d.to_uint(slot), place - slot);
+    let entry = light * d.uint(ALIAS_ENTRY) + d.uint(1);
+    let probability = d.load_real(Buffer::LightAlias, entry + d.uint(2));
+    let record = light * d.uint(RECORD);
+    let kind = d.load(Buffer::Lights, record);
+    let sample = lights.sample(d, KindNumber { kind, first: 0 }, record, from, [u[1], u[2], u[3]]);
+    // A delta light's "density" of 1 turns into the probability of its pick; the estimator is the same.
+    LightSample { pdf: sample.pdf * probability, ..sample }
+}
+
+/// The probability of picking a light.
+#[inline(always)]
+pub fn pick_probability<D: Domain>(d: D, light: D::U) -> D::F {
+    d.load_real(Buffer::LightAlias, light * d.uint(ALIAS_ENTRY) + d.uint(3))
+}
+
+/// An alias table's answer for a slot and a number in [0, 1): the slot itself, or its alias.
+#[inline(always)]
+fn resolve_alias<D: Domain>(d: D, buffer: Buffer, first: u32, slot: D::U, u: D::F) -> D::U {
+    let entry = slot * d.uint(ALIAS_ENTRY) + d.uint(first);
+    let threshold = d.load_real(buffer, entry);
+    let alias = d.load(buffer, entry + d.uint(1));
+    d.select_u(d.lt(u, threshold), slot, alias)
+}
+
+/// Multiple importance sampling's power heuristic, in the form that neither overflows nor divides 0 by 0
+/// (hard case L-09): the weight of a sample of density `a` > 0 where the other strategy's density is `b`.
+#[inline(always)]
+pub fn power_heuristic<D: Domain>(d: D, a: D::F, b: D::F) -> D::F {
+    let ratio = b / a;
+    d.lit(1.0) / d.fma(ratio, ratio, d.lit(1.0))
+}

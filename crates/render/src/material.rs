@@ -1,0 +1,44 @@
+//! Materials: programs that turn a surface point into a BSDF and emitted light.
+
+use crate::bsdf::Bsdf;
+use crate::domain::Domain;
+use crate::math::{Color, Vec3};
+use crate::surface::{Attributes, Surface};
+
+/// What a material says about one point.
+#[derive(Clone, Copy, Debug)]
+pub struct Shading<F, B> {
+    /// Emitted radiance towards `wo`, if the material emits at all.
+    pub emission: Option<Color<F>>,
+    /// How it scatters.
+    pub bsdf: B,
+}
+
+/// A material program. Emitted programs return concrete types, interpreted ones boxed nodes.
+pub trait Material<D: Domain> {
+    /// The vertex attributes that are read.
+    fn attributes(&self) -> Attributes;
+
+    /// Evaluates the inputs at a point, seen from the unit direction `wo`; may replace the shading normal.
+    fn shade<'a>(
+        &'a self,
+        d: D,
+        surface: &mut Surface<D>,
+        wo: Vec3<D::F>,
+    ) -> Shading<D::F, impl Bsdf<D> + 'a>
+    where
+        D: 'a;
+}
+
+/// Emission that leaves from the front only.
+#[inline(always)]
+pub fn front_only<D: Domain>(d: D, surface: &Surface<D>, emission: Color<D::F>) -> Color<D::F> {
+    emission.only(d, surface.front)
+}
+
+/// A normal map's texel as a normal in the shading frame: 2·rgb − 1, x and y scaled (glTF 2.0, section 3.9.3).
+#[inline(always)]
+pub fn decode_normal<D: Domain>(d: D, rgb: Color<D::F>, scale: D::F) -> Vec3<D::F> {
+    let [x, y, z] = [rgb.x, rgb.y, rgb.z].map(|c| d.fma(c, d.lit(2.0), d.lit(-1.0)));
+    Vec3 { x: x * scale, y: y * scale, z }
+}

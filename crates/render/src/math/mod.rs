@@ -1,0 +1,9 @@
+//! Vectors, elementary functions and sampling warps over any domain.
+
+pub mod elementary;
+pub mod frame;
+pub mod vec3;
+pub mod warp;
+
+pub use frame::Frame;
+pub use vec3::{Color, Vec3};

@@ -1,0 +1,267 @@
+//! What is known of the place where a ray met a surface, and how rays leave it again.
+
+use crate::domain::{Buffer, Domain};
+use crate::math::vec3::vec3;
+use crate::math::{Frame, Vec3};
+
+/// A ray with as many lanes as its domain. The interval is [0, tmax] in units of `dir`.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray<D: Domain> {
+    /// Origin, world space.
+    pub org: Vec3<D::F>,
+    /// Direction; its length is the unit of t.
+    pub dir: Vec3<D::F>,
+    /// End of the interval.
+    pub tmax: D::F,
+}
+
+/// What traversal found.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit<D: Domain> {
+    /// Distance, in units of the ray's direction.
+    pub t: D::F,
+    /// Barycentric weight of corner 1.
+    pub u: D::F,
+    /// Barycentric weight of corner 2.
+    pub v: D::F,
+    /// Number of the triangle.
+    pub prim: D::U,
+}
+
+/// Vertex attributes that a material reads. What is not read is not loaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct Attributes {
+    /// Interpolated normals; without them the surface is flat.
+    pub normals: bool,
+    /// Tangents.
+    pub tangents: bool,
+    /// First set of texture coordinates.
+    pub uv0: bool,
+    /// Second set of texture coordinates.
+    pub uv1: bool,
+    /// Vertex colours.
+    pub colors: bool,
+}
+
+/// The numbers of inputs that boxed programs keep per surface point.
+pub const MAX_INPUTS: usize = 32;
+
+/// A point of a surface and the way it was reached.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<D: Domain> {
+    /// The point, world space, computed from the corners.
+    pub point: Vec3<D::F>,
+    /// Bound on the rounding error of each component of `point`.
+    pub error: Vec3<D::F>,
+    /// Area of the triangle.
+    pub area: D::F,
+    /// Unit normal of the triangle, on the side from which the ray came.
+    pub geometric_normal: Vec3<D::F>,
+    /// Shading frame; its normal is on the side from which the ray came.
+    pub frame: Frame<D::F>,
+    /// The ray came from the front (counter-clockwise) side.
+    pub front: D::M,
+    /// Cosine between the geometric normal and the way back, ≥ 0.
+    pub cos_geometric: D::F,
+    /// Two sets of texture coordinates.
+    pub uv: [[D::F; 2]; 2],
+    /// Vertex colour.
+    pub color: Vec3<D::F>,
+    /// Vertex alpha.
+    pub alpha: D::F,
+    /// First word of the material's parameters.
+    pub params: D::U,
+    /// Inputs of a boxed program, evaluated once per point. Unused, and optimised away, in emitted programs.
+    pub inputs: [Vec3<D::F>; MAX_INPUTS],
+}
+
+/// Corners of a triangle with interpolation weights.
+struct Corners<D: Domain> {
+    vertices: [D::U; 3],
+    weights: [D::F; 3],
+}
+
+impl<D: Domain> Corners<D> {
+    #[inline(always)]
+    fn new(d: D, prim: D::U, u: D::F, v: D::F) -> Self {
+        let three = prim + (prim << 1);
+        let vertices = [0, 1, 2].map(|k| d.load(Buffer::Triangles, three + d.uint(k)));
+        Self { vertices, weights: [d.lit(1.0) - u - v, u, v] }
+    }
+
+    /// Component `k` of an attribute with `stride` words a vertex, at the three corners.
+    #[inline(always)]
+    fn component(&self, d: D, buffer: Buffer, stride: u32, k: u32) -> [D::F; 3] {
+        self.vertices.map(|vertex| d.load_real(buffer, vertex * d.uint(stride) + d.uint(k)))
+    }
+
+    #[inline(always)]
+    fn interpolate(&self, d: D, buffer: Buffer, stride: u32, k: u32) -> D::F {
+        let c = self.component(d, buffer, stride, k);
+        let w = &self.weights;
+        d.fma(c[0], w[0], d.fma(c[1], w[1], c[2] * w[2]))
+    }
+
+    #[inline(always)]
+    fn interpolate3(&self, d: D, buffer: Buffer, stride: u32) -> Vec3<D::F> {
+        let [x, y, z] = [0, 1, 2].map(|k| self.interpolate(d, buffer, stride, k));
+        vec3(x, y, z)
+    }
+
+    #[inline(always)]
+    fn uv(&self, d: D, buffer: Buffer) -> [D::F; 2] {
+        [0, 1].map(|k| self.interpolate(d, buffer, 2, k))
+    }
+}
+
+/// A point with the bound on its error, and the triangle's unnormalised normal.
+///
+/// The bound is γ₇ times the weighted magnitudes of the corners (Pharr, Jakob, Humphreys 2023, section 6.8.4).
+#[inline(always)]
+fn position<D: Domain>(
+    d: D,
+    weights: &[D::F; 3],
+    axes: [[D::F; 3]; 3],
+) -> (Vec3<D::F>, Vec3<D::F>, Vec3<D::F>) {
+    let gamma = d.lit(7.0 * 5.960_464_5e-8 / (1.0 - 7.0 * 5.960_464_5e-8));
+    let [x, y, z] = axes.map(|c| {
+        let terms = [c[0] * weights[0], c[1] * weights[1], c[2] * weights[2]];
+        let error = (d.abs(terms[0]) + d.abs(terms[1]) + d.abs(terms[2])) * gamma;
+        (terms[0] + terms[1] + terms[2], error, c[1] - c[0], c[2] - c[0])
+    });
+    let edge1 = vec3(x.2, y.2, z.2);
+    let edge2 = vec3(x.3, y.3, z.3);
+    (vec3(x.0, y.0, z.0), vec3(x.1, y.1, z.1), edge1.cross(edge2))
+}
+
+impl<D: Domain> Surface<D> {
+    /// The surface at a hit of a ray with direction `dir`, with the attributes that its material reads.
+    #[inline(always)]
+    pub fn new(d: D, attributes: Attributes, hit: &Hit<D>, dir: Vec3<D::F>) -> Self {
+        let corners = Corners::new(d, hit.prim, hit.u, hit.v);
+        let axes = [0, 1, 2].map(|k| corners.component(d, Buffer::Positions, 3, k));
+        let (point, error, normal) = position(d, &corners.weights, axes);
+        let outward = normal.normalize_any(d);
+        let wo = -dir.normalize(d);
+        let cos_outward = outward.dot(d, wo);
+        let front = d.lt(d.lit(0.0), cos_outward);
+        let zero = d.lit(0.0);
+        let flip = |n: Vec3<D::F>| n.map(|c| d.select(front, c, -c));
+        let geometric_normal = flip(outward);
+
+        let shading_normal = if attributes.normals {
+            visible(d, flip(corners.interpolate3(d, Buffer::Normals, 3).normalize_any(d)), wo)
+        } else {
+            geometric_normal
+        };
+        let mut frame = Frame::around(d, shading_normal);
+        if attributes.tangents {
+            let raw = corners.interpolate3(d, Buffer::Tangents, 4);
+            let sign = corners.component(d, Buffer::Tangents, 4, 3)[0];
+            // Gram–Schmidt; where the tangent vanishes the frame around the normal stays.
+            let tangent = raw - shading_normal.scale(raw.dot(d, shading_normal));
+            let length = tangent.length(d);
+            let usable = d.lt(d.lit(1e-6), length);
+            let tangent = tangent.scale(d.lit(1.0) / d.max(length, d.lit(1e-6)));
+            let sign = d.select(front, sign, -sign);
+            let bitangent = shading_normal.cross(tangent).scale(sign);
+            let pick = |a: Vec3<D::F>, b: Vec3<D::F>| {
+                vec3(d.select(usable, a.x, b.x), d.select(usable, a.y, b.y), d.select(usable, a.z, b.z))
+            };
+            frame.tangent = pick(tangent, frame.tangent);
+            frame.bitangent = pick(bitangent, frame.bitangent);
+        }
+        let uv = |wanted: bool, buffer: Buffer| {
+            if wanted { corners.uv(d, buffer) } else { [zero; 2] }
+        };
+        let one = d.lit(1.0);
+        let (color, alpha) = if attributes.colors {
+            (
+                corners.interpolate3(d, Buffer::Colors, 4),
+                corners.interpolate(d, Buffer::Colors, 4, 3),
+            )
+        } else {
+            (Vec3::splat(one), one)
+        };
+        Self {
+            point,
+            error,
+            area: normal.length(d) * d.lit(0.5),
+            geometric_normal,
+            frame,
+            front,
+            cos_geometric: d.abs(cos_outward),
+            uv: [uv(attributes.uv0, Buffer::Uv0), uv(attributes.uv1, Buffer::Uv1)],
+            color,
+            alpha,
+            params: d.load(Buffer::TriangleParams, hit.prim),
+            inputs: [Vec3::splat(zero); MAX_INPUTS],
+        }
+    }
+
+    /// Where the ray `from` → triangle `prim` at barycentric (u, v) would arrive: light sampling's view of a light.
+    #[inline(always)]
+    pub fn seen_from(
+        d: D,
+        attributes: Attributes,
+        prim: D::U,
+        [u, v]: [D::F; 2],
+        from: Vec3<D::F>,
+    ) -> Self {
+        let corners = Corners::new(d, prim, u, v);
+        let axes = [0, 1, 2].map(|k| corners.component(d, Buffer::Positions, 3, k));
+        let (point, _, _) = position(d, &corners.weights, axes);
+        Self::new(d, attributes, &Hit { t: d.lit(1.0), u, v, prim }, point - from)
+    }
+
+    /// Replaces the shading normal, given in the shading frame (a normal map's value).
+    #[inline(always)]
+    pub fn with_normal(mut self, d: D, local: Vec3<D::F>, wo: Vec3<D::F>) -> Self {
+        let normal = visible(d, self.frame.to_world(local).normalize_any(d), wo);
+        let tangent = self.frame.tangent - normal.scale(self.frame.tangent.dot(d, normal));
+        let tangent = tangent.normalize_any(d);
+        let handed = self.frame.normal.cross(self.frame.tangent).dot(d, self.frame.bitangent);
+        self.frame = Frame {
+            tangent,
+            bitangent: normal.cross(tangent).scale(d.copysign(d.lit(1.0), handed)),
+            normal,
+        };
+        self
+    }
+
+    /// Where a ray that leaves in direction `dir` starts.
+    #[inline(always)]
+    pub fn spawn(&self, d: D, dir: Vec3<D::F>) -> Vec3<D::F> {
+        offset_point(d, self.point, self.error, self.geometric_normal, dir)
+    }
+}
+
+/// A shading normal from which the way back `wo` can be seen: one that `wo` lies below is tilted until it does
+/// not, so that interpolated and mapped normals make no black rims (hard cases M-09, O-07).
+#[inline(always)]
+fn visible<D: Domain>(d: D, normal: Vec3<D::F>, wo: Vec3<D::F>) -> Vec3<D::F> {
+    let lift = d.max(d.lit(1e-3) - normal.dot(d, wo), d.lit(0.0));
+    (normal + wo.scale(lift)).normalize_any(d)
+}
+
+/// `point`, moved along `normal` to the side of `dir` until it is certainly beyond the surface in spite of
+/// `error`: the smallest move that suffices (Pharr, Jakob, Humphreys 2023, section 6.8.6).
+#[inline(always)]
+pub fn offset_point<D: Domain>(
+    d: D,
+    point: Vec3<D::F>,
+    error: Vec3<D::F>,
+    normal: Vec3<D::F>,
+    dir: Vec3<D::F>,
+) -> Vec3<D::F> {
+    let distance = normal.map(|c| d.abs(c)).dot(d, error);
+    let offset = normal.scale(d.copysign(distance, dir.dot(d, normal)));
+    let ulp = d.lit(f64::from(f32::EPSILON));
+    let outward = |p: D::F, o: D::F| {
+        let moved = p + o;
+        // One unit in the last place further, since the sum was rounded.
+        let further = moved + d.copysign(d.abs(moved) * ulp, o);
+        d.select(d.eq(o, d.lit(0.0)), p, further)
+    };
+    vec3(outward(point.x, offset.x), outward(point.y, offset.y), outward(point.z, offset.z))
+}

@@ -1,0 +1,136 @@
+//! Textures: where the inputs of materials come from.
+//!
+//! A source gives a colour or a number for a point of a surface. Sources are types, so that a program made of
+//! concrete ones contains nothing else; boxed, they are the interpreted tier's nodes. Inputs are evaluated once
+//! per point, before the BSDF, and enter it as [`Bound`] values or, interpreted, as [`Input`] numbers.
+
+mod image;
+mod srgb;
+
+pub use image::{
+    Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8, Mirror, Nearest, Repeat, SrgbRgba8,
+    TexelFormat, UvMap, Wrapping,
+};
+pub use srgb::srgb_table;
+
+use crate::domain::{Buffer, Domain};
+use crate::math::vec3::{lit3, vec3};
+use crate::math::{Color, Vec3};
+use crate::surface::Surface;
+
+/// Gives a colour for a point of a surface.
+pub trait ColorSource<D: Domain> {
+    /// The colour, linear Rec. 709.
+    fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F>;
+}
+
+/// Gives a number for a point of a surface.
+pub trait ScalarSource<D: Domain> {
+    /// The number.
+    fn scalar(&self, d: D, surface: &Surface<D>) -> D::F;
+}
+
+/// A colour or number printed into the program.
+#[derive(Clone, Copy, Debug)]
+pub struct Const<T>(pub T);
+
+impl<D: Domain> ColorSource<D> for Const<[f32; 3]> {
+    #[inline(always)]
+    fn color(&self, d: D, _: &Surface<D>) -> Color<D::F> {
+        lit3(d, self.0)
+    }
+}
+impl<D: Domain> ScalarSource<D> for Const<f32> {
+    #[inline(always)]
+    fn scalar(&self, d: D, _: &Surface<D>) -> D::F {
+        d.lit(f64::from(self.0))
+    }
+}
+
+/// A colour or number read from the material's parameter block; the field is the word's offset.
+#[derive(Clone, Copy, Debug)]
+pub struct Param(pub u32);
+
+impl<D: Domain> ColorSource<D> for Param {
+    #[inline(always)]
+    fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F> {
+        let [r, g, b] = [0, 1, 2]
+            .map(|k| d.load_real(Buffer::Params, surface.params + d.uint(self.0 + k)));
+        vec3(r, g, b)
+    }
+}
+impl<D: Domain> ScalarSource<D> for Param {
+    #[inline(always)]
+    fn scalar(&self, d: D, surface: &Surface<D>) -> D::F {
+        d.load_real(Buffer::Params, surface.params + d.uint(self.0))
+    }
+}
+
+/// The interpolated vertex colour (`COLOR_0`); as a number, its alpha.
+#[derive(Clone, Copy, Debug)]
+pub struct VertexColor;
+
+impl<D: Domain> ColorSource<D> for VertexColor {
+    #[inline(always)]
+    fn color(&self, _: D, surface: &Surface<D>) -> Color<D::F> {
+        surface.color
+    }
+}
+impl<D: Domain> ScalarSource<D> for VertexColor {
+    #[inline(always)]
+    fn scalar(&self, _: D, surface: &Surface<D>) -> D::F {
+        surface.alpha
+    }
+}
+
+/// The product of two sources.
+#[derive(Clone, Copy, Debug)]
+pub struct Product<A, B>(pub A, pub B);
+
+impl<D: Domain, A: ColorSource<D>, B: ColorSource<D>> ColorSource<D> for Product<A, B> {
+    #[inline(always)]
+    fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F> {
+        self.0.color(d, surface) * self.1.color(d, surface)
+    }
+}
+impl<D: Domain, A: ScalarSource<D>, B: ScalarSource<D>> ScalarSource<D> for Product<A, B> {
+    #[inline(always)]
+    fn scalar(&self, d: D, surface: &Surface<D>) -> D::F {
+        self.0.scalar(d, surface) * self.1.scalar(d, surface)
+    }
+}
+
+/// An input that was evaluated already.
+#[derive(Clone, Copy, Debug)]
+pub struct Bound<T>(pub T);
+
+impl<D: Domain> ColorSource<D> for Bound<Vec3<D::F>> {
+    #[inline(always)]
+    fn color(&self, _: D, _: &Surface<D>) -> Color<D::F> {
+        self.0
+    }
+}
+
+impl<D: Domain> ScalarSource<D> for Bound<D::F> {
+    #[inline(always)]
+    fn scalar(&self, _: D, _: &Surface<D>) -> D::F {
+        self.0
+    }
+}
+
+/// An input of a boxed program, by number: already evaluated into [`Surface::inputs`].
+#[derive(Clone, Copy, Debug)]
+pub struct Input(pub usize);
+
+impl<D: Domain> ColorSource<D> for Input {
+    #[inline(always)]
+    fn color(&self, _: D, surface: &Surface<D>) -> Color<D::F> {
+        surface.inputs[self.0]
+    }
+}
+impl<D: Domain> ScalarSource<D> for Input {
+    #[inline(always)]
+    fn scalar(&self, _: D, surface: &Surface<D>) -> D::F {
+        surface.inputs[self.0].x
+    }
+}
