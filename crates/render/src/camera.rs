@@ -47,3 +47,22 @@ impl<D: Domain> Camera<D> for Orthographic {
         Ray { org, dir: vector(d, 9).normalize(d), tmax: d.lit(f64::from(f32::MAX)) }
     }
 }
+
+/// A camera chosen at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum AnyCamera {
+    /// [`Perspective`].
+    Perspective,
+    /// [`Orthographic`].
+    Orthographic,
+}
+
+impl<D: Domain> Camera<D> for AnyCamera {
+    #[inline(always)]
+    fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
+        match self {
+            Self::Perspective => Perspective.ray(d, film),
+            Self::Orthographic => Orthographic.ray(d, film),
+        }
+    }
+}

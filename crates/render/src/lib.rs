@@ -1,13 +1,18 @@
 //! The renderer, generic over an arithmetic domain: every formula once.
 #![forbid(unsafe_code)]
 
+pub mod alpha;
 pub mod bsdf;
 pub mod camera;
 pub mod domain;
+pub mod film;
 pub mod light;
 pub mod material;
 pub mod math;
+pub mod program;
 pub mod sampler;
+pub mod scene;
+pub mod scene_data;
 pub mod surface;
 pub mod texture;
 pub mod tracer;

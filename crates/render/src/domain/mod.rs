@@ -27,7 +27,7 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
 pub use lanes::{Lanes, Lanes4, Lanes8, Lanes16};
 pub use precise::Precise;
-pub use scalar::Scalar;
+pub use scalar::{Scalar, Uint};
 
 /// A real number of a domain.
 pub trait Real:

@@ -59,11 +59,11 @@ fn radiance<D: Domain>(d: D, [u, v]: [D::F; 2]) -> Color<D::F> {
     let (width, columns, rows) = size(d);
     let first = d.uniform(Buffer::Environment, 2);
     let texel = |x: D::F, y: D::F| {
-        let x = d.to_uint(Repeat::wrap(d, x, columns));
-        let y = d.to_uint(Clamp::wrap(d, y, rows));
-        LinearFloat::color(d, first + (y * width + x) * d.uint(LinearFloat::WORDS))
+        let x = d.to_uint(Repeat.wrap(d, x, columns));
+        let y = d.to_uint(Clamp.wrap(d, y, rows));
+        LinearFloat.color(d, first + (y * width + x) * d.uint(LinearFloat.words()))
     };
-    Bilinear::filter(d, u * columns, v * rows, texel, |a, b, t| a.lerp(b, t))
+    Bilinear.filter(d, u * columns, v * rows, texel, |a, b, t| a.lerp(b, t))
         .scale(d.uniform_real(Buffer::Environment, 3))
 }
 
@@ -105,8 +105,8 @@ impl<D: Domain> LightKind<D> for Environment {
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
         let (place, sin_theta) = to_image(d, dir);
         let (width, columns, rows) = size(d);
-        let column = d.to_uint(Clamp::wrap(d, d.floor(place[0] * columns), columns));
-        let row = d.to_uint(Clamp::wrap(d, d.floor(place[1] * rows), rows));
+        let column = d.to_uint(Clamp.wrap(d, d.floor(place[0] * columns), columns));
+        let row = d.to_uint(Clamp.wrap(d, d.floor(place[1] * rows), rows));
         let pick = pick_probability(d, d.uniform(Buffer::Environment, 6));
         Some(Background {
             radiance: radiance(d, place),

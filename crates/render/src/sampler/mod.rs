@@ -48,3 +48,22 @@ pub fn hash<D: Domain>(d: D, x: D::U) -> D::U {
 pub fn unit<D: Domain>(d: D, x: D::U) -> D::F {
     d.to_real(x >> 8) * d.lit(1.0 / 16_777_216.0)
 }
+
+/// A sampler chosen at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum AnySampler {
+    /// [`Independent`].
+    Independent,
+    /// [`Sobol`].
+    Sobol,
+}
+
+impl<D: Domain> Sampler<D> for AnySampler {
+    #[inline(always)]
+    fn pair(&self, d: D, key: SampleKey<D::U>, dimension: D::U) -> [D::F; 2] {
+        match self {
+            Self::Independent => Independent.pair(d, key, dimension),
+            Self::Sobol => Sobol.pair(d, key, dimension),
+        }
+    }
+}

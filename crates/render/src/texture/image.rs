@@ -1,10 +1,9 @@
 //! Image textures: nearest and bilinear, repeated, mirrored or clamped, in three texel formats.
 //!
 //! What an image is (its place among the texels, width, height) is data: three words of the material's
-//! parameter block. How it is read (wrapping, filtering, format, coordinates) is structure: type parameters.
+//! parameter block. How it is read (wrapping, filtering, format, coordinates) is structure: type parameters, for
+//! which the `Any…` enumerations stand in where a renderer is interpreted.
 //! Texel centres lie at half-integers; row 0 is at v = 0.
-
-use std::marker::PhantomData;
 
 use super::srgb;
 use super::{ColorSource, ScalarSource};
@@ -16,7 +15,7 @@ use crate::surface::Surface;
 /// How coordinates outside the image are read.
 pub trait Wrapping {
     /// A whole texel number in [0, size) for a whole number `i`. `size` > 0.
-    fn wrap<D: Domain>(d: D, i: D::F, size: D::F) -> D::F;
+    fn wrap<D: Domain>(&self, d: D, i: D::F, size: D::F) -> D::F;
 }
 
 /// Tiles.
@@ -38,13 +37,13 @@ fn modulo<D: Domain>(d: D, i: D::F, size: D::F) -> D::F {
 
 impl Wrapping for Repeat {
     #[inline(always)]
-    fn wrap<D: Domain>(d: D, i: D::F, size: D::F) -> D::F {
+    fn wrap<D: Domain>(&self, d: D, i: D::F, size: D::F) -> D::F {
         modulo(d, i, size)
     }
 }
 impl Wrapping for Mirror {
     #[inline(always)]
-    fn wrap<D: Domain>(d: D, i: D::F, size: D::F) -> D::F {
+    fn wrap<D: Domain>(&self, d: D, i: D::F, size: D::F) -> D::F {
         let double = size + size;
         let r = modulo(d, i, double);
         d.min(r, double - d.lit(1.0) - r)
@@ -52,19 +51,41 @@ impl Wrapping for Mirror {
 }
 impl Wrapping for Clamp {
     #[inline(always)]
-    fn wrap<D: Domain>(d: D, i: D::F, size: D::F) -> D::F {
+    fn wrap<D: Domain>(&self, d: D, i: D::F, size: D::F) -> D::F {
         d.max(d.min(i, size - d.lit(1.0)), d.lit(0.0))
+    }
+}
+
+/// [`Wrapping`] chosen at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum AnyWrap {
+    /// [`Repeat`].
+    Repeat,
+    /// [`Mirror`].
+    Mirror,
+    /// [`Clamp`].
+    Clamp,
+}
+
+impl Wrapping for AnyWrap {
+    #[inline(always)]
+    fn wrap<D: Domain>(&self, d: D, i: D::F, size: D::F) -> D::F {
+        match self {
+            Self::Repeat => Repeat.wrap(d, i, size),
+            Self::Mirror => Mirror.wrap(d, i, size),
+            Self::Clamp => Clamp.wrap(d, i, size),
+        }
     }
 }
 
 /// How a texel is stored.
 pub trait TexelFormat {
     /// Words a texel.
-    const WORDS: u32;
+    fn words(&self) -> u32;
     /// Red, green and blue of the texel that starts at a word.
-    fn color<D: Domain>(d: D, word: D::U) -> Color<D::F>;
+    fn color<D: Domain>(&self, d: D, word: D::U) -> Color<D::F>;
     /// One channel, 0 red … 3 alpha, of the texel that starts at a word.
-    fn channel<D: Domain>(d: D, word: D::U, channel: u32) -> D::F;
+    fn channel<D: Domain>(&self, d: D, word: D::U, channel: u32) -> D::F;
 }
 
 /// Four bytes; colour is sRGB-encoded, alpha linear.
@@ -87,42 +108,89 @@ fn unorm<D: Domain>(d: D, texel: D::U, channel: u32) -> D::F {
 }
 
 impl TexelFormat for SrgbRgba8 {
-    const WORDS: u32 = 1;
     #[inline(always)]
-    fn color<D: Domain>(d: D, word: D::U) -> Color<D::F> {
+    fn words(&self) -> u32 {
+        1
+    }
+    #[inline(always)]
+    fn color<D: Domain>(&self, d: D, word: D::U) -> Color<D::F> {
         let texel = d.load(Buffer::Texels, word);
         let [r, g, b] = [0, 1, 2].map(|k| srgb::decode(d, byte(d, texel, k)));
         vec3(r, g, b)
     }
     #[inline(always)]
-    fn channel<D: Domain>(d: D, word: D::U, channel: u32) -> D::F {
+    fn channel<D: Domain>(&self, d: D, word: D::U, channel: u32) -> D::F {
         let texel = d.load(Buffer::Texels, word);
         if channel == 3 { unorm(d, texel, 3) } else { srgb::decode(d, byte(d, texel, channel)) }
     }
 }
 impl TexelFormat for LinearRgba8 {
-    const WORDS: u32 = 1;
     #[inline(always)]
-    fn color<D: Domain>(d: D, word: D::U) -> Color<D::F> {
+    fn words(&self) -> u32 {
+        1
+    }
+    #[inline(always)]
+    fn color<D: Domain>(&self, d: D, word: D::U) -> Color<D::F> {
         let texel = d.load(Buffer::Texels, word);
         let [r, g, b] = [0, 1, 2].map(|k| unorm(d, texel, k));
         vec3(r, g, b)
     }
     #[inline(always)]
-    fn channel<D: Domain>(d: D, word: D::U, channel: u32) -> D::F {
+    fn channel<D: Domain>(&self, d: D, word: D::U, channel: u32) -> D::F {
         unorm(d, d.load(Buffer::Texels, word), channel)
     }
 }
 impl TexelFormat for LinearFloat {
-    const WORDS: u32 = 4;
     #[inline(always)]
-    fn color<D: Domain>(d: D, word: D::U) -> Color<D::F> {
+    fn words(&self) -> u32 {
+        4
+    }
+    #[inline(always)]
+    fn color<D: Domain>(&self, d: D, word: D::U) -> Color<D::F> {
         let [r, g, b] = [0, 1, 2].map(|k| d.load_real(Buffer::Texels, word + d.uint(k)));
         vec3(r, g, b)
     }
     #[inline(always)]
-    fn channel<D: Domain>(d: D, word: D::U, channel: u32) -> D::F {
+    fn channel<D: Domain>(&self, d: D, word: D::U, channel: u32) -> D::F {
         d.load_real(Buffer::Texels, word + d.uint(channel))
+    }
+}
+
+/// [`TexelFormat`] chosen at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum AnyFormat {
+    /// [`SrgbRgba8`].
+    SrgbRgba8,
+    /// [`LinearRgba8`].
+    LinearRgba8,
+    /// [`LinearFloat`].
+    LinearFloat,
+}
+
+impl TexelFormat for AnyFormat {
+    #[inline(always)]
+    fn words(&self) -> u32 {
+        match self {
+            Self::SrgbRgba8 => SrgbRgba8.words(),
+            Self::LinearRgba8 => LinearRgba8.words(),
+            Self::LinearFloat => LinearFloat.words(),
+        }
+    }
+    #[inline(always)]
+    fn color<D: Domain>(&self, d: D, word: D::U) -> Color<D::F> {
+        match self {
+            Self::SrgbRgba8 => SrgbRgba8.color(d, word),
+            Self::LinearRgba8 => LinearRgba8.color(d, word),
+            Self::LinearFloat => LinearFloat.color(d, word),
+        }
+    }
+    #[inline(always)]
+    fn channel<D: Domain>(&self, d: D, word: D::U, channel: u32) -> D::F {
+        match self {
+            Self::SrgbRgba8 => SrgbRgba8.channel(d, word, channel),
+            Self::LinearRgba8 => LinearRgba8.channel(d, word, channel),
+            Self::LinearFloat => LinearFloat.channel(d, word, channel),
+        }
     }
 }
 
@@ -130,6 +198,7 @@ impl TexelFormat for LinearFloat {
 pub trait Filtering {
     /// Combines `texel(x, y)`, which takes whole, unwrapped texel numbers, at the continuous position (x, y).
     fn filter<D: Domain, T: Copy>(
+        &self,
         d: D,
         x: D::F,
         y: D::F,
@@ -148,6 +217,7 @@ pub struct Bilinear;
 impl Filtering for Nearest {
     #[inline(always)]
     fn filter<D: Domain, T: Copy>(
+        &self,
         d: D,
         x: D::F,
         y: D::F,
@@ -160,6 +230,7 @@ impl Filtering for Nearest {
 impl Filtering for Bilinear {
     #[inline(always)]
     fn filter<D: Domain, T: Copy>(
+        &self,
         d: D,
         x: D::F,
         y: D::F,
@@ -172,6 +243,32 @@ impl Filtering for Bilinear {
         let top = lerp(texel(x0, y0), texel(x1, y0), x - x0);
         let bottom = lerp(texel(x0, y1), texel(x1, y1), x - x0);
         lerp(top, bottom, y - y0)
+    }
+}
+
+/// [`Filtering`] chosen at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum AnyFilter {
+    /// [`Nearest`].
+    Nearest,
+    /// [`Bilinear`].
+    Bilinear,
+}
+
+impl Filtering for AnyFilter {
+    #[inline(always)]
+    fn filter<D: Domain, T: Copy>(
+        &self,
+        d: D,
+        x: D::F,
+        y: D::F,
+        texel: impl Fn(D::F, D::F) -> T,
+        lerp: impl Fn(T, T, D::F) -> T,
+    ) -> T {
+        match self {
+            Self::Nearest => Nearest.filter(d, x, y, texel, lerp),
+            Self::Bilinear => Bilinear.filter(d, x, y, texel, lerp),
+        }
     }
 }
 
@@ -200,43 +297,42 @@ impl UvMap {
     }
 }
 
-/// An image texture: wrapping along u and v, filter, texel format.
-#[derive(Clone, Copy, Debug)]
+/// An image texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Image<U, V, F, T> {
     /// Offset in the parameter block of: first word among the texels, width, height.
     pub slot: u32,
     /// Coordinates.
     pub uv: UvMap,
-    /// The channel read when a number is asked for.
+    /// The channel, 0 red … 3 alpha, read when a number is asked for.
     pub channel: u32,
-    types: PhantomData<(U, V, F, T)>,
+    /// Wrapping along u and v.
+    pub wrap: (U, V),
+    /// Filter.
+    pub filter: F,
+    /// Texel format.
+    pub format: T,
 }
 
 impl<U: Wrapping, V: Wrapping, F: Filtering, T: TexelFormat> Image<U, V, F, T> {
-    /// The image described at `slot`.
     #[inline(always)]
-    pub fn new(slot: u32, uv: UvMap, channel: u32) -> Self {
-        Self { slot, uv, channel, types: PhantomData }
-    }
-
-    #[inline(always)]
-    fn sample<D: Domain, V3: Copy>(
+    fn sample<D: Domain, S: Copy>(
         &self,
         d: D,
         surface: &Surface<D>,
-        fetch: impl Fn(D::U) -> V3,
-        lerp: impl Fn(V3, V3, D::F) -> V3,
-    ) -> V3 {
+        fetch: impl Fn(D::U) -> S,
+        lerp: impl Fn(S, S, D::F) -> S,
+    ) -> S {
         let word = |k: u32| d.load(Buffer::Params, surface.params + d.uint(self.slot + k));
         let (first, width, height) = (word(0), word(1), word(2));
         let (columns, rows) = (d.to_real(width), d.to_real(height));
         let [u, v] = self.uv.apply(d, surface);
         let texel = |x: D::F, y: D::F| {
-            let x = d.to_uint(U::wrap(d, x, columns));
-            let y = d.to_uint(V::wrap(d, y, rows));
-            fetch(first + (y * width + x) * d.uint(T::WORDS))
+            let x = d.to_uint(self.wrap.0.wrap(d, x, columns));
+            let y = d.to_uint(self.wrap.1.wrap(d, y, rows));
+            fetch(first + (y * width + x) * d.uint(self.format.words()))
         };
-        F::filter(d, u * columns, v * rows, texel, lerp)
+        self.filter.filter(d, u * columns, v * rows, texel, lerp)
     }
 }
 
@@ -245,7 +341,7 @@ impl<D: Domain, U: Wrapping, V: Wrapping, F: Filtering, T: TexelFormat> ColorSou
 {
     #[inline(always)]
     fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F> {
-        self.sample(d, surface, |word| T::color(d, word), |a, b, t| a.lerp(b, t))
+        self.sample(d, surface, |word| self.format.color(d, word), |a, b, t| a.lerp(b, t))
     }
 }
 
@@ -254,6 +350,7 @@ impl<D: Domain, U: Wrapping, V: Wrapping, F: Filtering, T: TexelFormat> ScalarSo
 {
     #[inline(always)]
     fn scalar(&self, d: D, surface: &Surface<D>) -> D::F {
-        self.sample(d, surface, |word| T::channel(d, word, self.channel), |a, b, t| a + (b - a) * t)
+        let fetch = |word| self.format.channel(d, word, self.channel);
+        self.sample(d, surface, fetch, |a, b, t| a + (b - a) * t)
     }
 }

@@ -8,8 +8,8 @@ mod image;
 mod srgb;
 
 pub use image::{
-    Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8, Mirror, Nearest, Repeat, SrgbRgba8,
-    TexelFormat, UvMap, Wrapping,
+    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8, Mirror,
+    Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
 };
 pub use srgb::srgb_table;
 

@@ -1,0 +1,103 @@
+//! The interpreted renderer: a scene's structure as boxed nodes. It starts at once and needs no compiler.
+
+use residual_bvh::{Culling, Hit, HitFilter, Ray};
+
+use super::boxed::{self, BoxedMaterial, BoxedScalar};
+use super::{LightNode, Structure};
+use crate::alpha::{AlphaTest, is_there};
+use crate::camera::AnyCamera;
+use crate::domain::{Buffer, Buffers, Domain, Scalar};
+use crate::light::{Area, Directional, Environment, LightKind, Point, Spot};
+use crate::sampler::AnySampler;
+use crate::scene::{MaterialVisitor, Scene};
+use crate::surface::Attributes;
+
+struct BoxedAlpha<'a> {
+    attributes: Attributes,
+    alpha: BoxedScalar<'a, Scalar<'a>>,
+    test: AlphaTest<BoxedScalar<'a, Scalar<'a>>>,
+}
+
+/// A scene as boxed nodes over a domain.
+pub struct Interpreted<'a, D: Domain> {
+    buffers: &'a Buffers<'a>,
+    materials: Vec<BoxedMaterial<'a, D>>,
+    alphas: Vec<Option<BoxedAlpha<'a>>>,
+    lights: Vec<Box<dyn LightKind<D> + Send + Sync + 'a>>,
+    camera: AnyCamera,
+    sampler: AnySampler,
+}
+
+impl<'a, D: Domain + 'a> Interpreted<'a, D> {
+    /// Builds the nodes of a structure whose data are in `buffers`.
+    pub fn new(structure: &Structure, buffers: &'a Buffers<'a>) -> Self {
+        let light = |node: &LightNode| -> Box<dyn LightKind<D> + Send + Sync + 'a> {
+            match node {
+                LightNode::Area { emission, attributes } => {
+                    Box::new(Area { emission: boxed::color(emission), attributes: *attributes })
+                }
+                LightNode::Point => Box::new(Point),
+                LightNode::Spot => Box::new(Spot),
+                LightNode::Directional => Box::new(Directional),
+                LightNode::Environment => Box::new(Environment),
+            }
+        };
+        let alphas = structure.programs.iter().map(|program| {
+            program.alpha.as_ref().map(|node| BoxedAlpha {
+                attributes: node.attributes,
+                alpha: boxed::scalar(&node.alpha),
+                test: match &node.test {
+                    AlphaTest::Mask(cutoff) => AlphaTest::Mask(boxed::scalar(cutoff)),
+                    AlphaTest::Blend => AlphaTest::Blend,
+                },
+            })
+        });
+        Self {
+            buffers,
+            materials: structure.programs.iter().map(BoxedMaterial::new).collect(),
+            alphas: alphas.collect(),
+            lights: structure.lights.iter().map(light).collect(),
+            camera: structure.camera,
+            sampler: structure.sampler,
+        }
+    }
+}
+
+impl<D: Domain> HitFilter for Interpreted<'_, D> {
+    // What a scene does without is known only at run time here: the price of interpretation.
+    const CULLING: Culling = Culling::PerTriangle;
+    const REJECTS: bool = true;
+
+    #[inline(always)]
+    fn accept(&self, ray: &Ray, hit: &Hit) -> bool {
+        let program = self.buffers.word(Buffer::TrianglePrograms, hit.prim) as usize;
+        match &self.alphas[program] {
+            Some(alpha) => {
+                is_there(self.buffers, alpha.attributes, &alpha.alpha, &alpha.test, ray, hit)
+            }
+            None => true,
+        }
+    }
+}
+
+impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
+    type Camera = AnyCamera;
+    type Sampler = AnySampler;
+    type Lights = [Box<dyn LightKind<D> + Send + Sync + 'a>];
+
+    fn camera(&self) -> &AnyCamera {
+        &self.camera
+    }
+    fn sampler(&self) -> AnySampler {
+        self.sampler
+    }
+    fn lights(&self) -> &Self::Lights {
+        &self.lights
+    }
+    fn programs(&self) -> usize {
+        self.materials.len()
+    }
+    fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
+        visitor.visit(&self.materials[program])
+    }
+}
