@@ -1,0 +1,179 @@
+//! Traces primary rays at a bumpy sphere, prints it in characters, and times coherent and random
+//! rays: `cargo run --release -p residual-bvh --example trace`.
+
+use std::time::Instant;
+
+use fearless_simd::{Level, dispatch};
+use residual_bvh::{
+    AllHits, BuildQuality, Bvh, BvhView, Hit, Lanes, Ray, any_hit, build, closest_hit,
+};
+
+fn main() {
+    let (positions, triangles) = bumpy_sphere(300, 600);
+    println!("{} triangles", triangles.len());
+    measure::<4>(&positions, &triangles);
+    measure::<8>(&positions, &triangles);
+    let bvh = measure::<16>(&positions, &triangles);
+    let hits = trace(bvh.view(), &camera_rays(64, 32));
+    for row in hits.chunks(64) {
+        let shade = |hit: &Hit| {
+            if hit.is_hit() {
+                b"#*+=-:."[(hit.t * 12.0) as usize % 7]
+            } else {
+                b' '
+            }
+        };
+        println!(
+            "{}",
+            String::from_utf8_lossy(&row.iter().map(shade).collect::<Vec<u8>>())
+        );
+    }
+}
+
+fn measure<const N: usize>(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Bvh<N>
+where
+    Token: Traces<N>,
+{
+    let start = Instant::now();
+    let bvh = build::<N>(positions, triangles, None, BuildQuality::Best);
+    println!(
+        "width {N:2}: built in {:.2} s, {:.1} MB, cost {:.2}",
+        start.elapsed().as_secs_f64(),
+        bvh.memory_bytes() as f64 / 1e6,
+        bvh.sah_cost()
+    );
+    let camera = camera_rays(1024, 1024);
+    let bounced = bounced_rays(&camera, &Token::trace(bvh.view(), &camera));
+    for (name, rays) in [("coherent", &camera), ("random", &bounced)] {
+        let mut best = [f64::INFINITY; 2];
+        let mut found = [0; 2];
+        for _ in 0..5 {
+            let start = Instant::now();
+            found[0] = Token::trace(bvh.view(), rays)
+                .iter()
+                .filter(|hit| hit.is_hit())
+                .count();
+            best[0] = best[0].min(start.elapsed().as_secs_f64());
+            let start = Instant::now();
+            found[1] = Token::occluded(bvh.view(), rays);
+            best[1] = best[1].min(start.elapsed().as_secs_f64());
+        }
+        assert_eq!(found[0], found[1]);
+        let [closest, any] = best.map(|seconds| rays.len() as f64 / seconds / 1e6);
+        println!(
+            "    {name:8}  closest {closest:5.2}  any {any:5.2} Mrays/s  ({} of {} hit)",
+            found[0],
+            rays.len()
+        );
+    }
+    bvh
+}
+
+/// Run-time dispatch for each width.
+struct Token;
+
+trait Traces<const N: usize> {
+    fn trace(bvh: BvhView<'_, N>, rays: &[Ray]) -> Vec<Hit>;
+    fn occluded(bvh: BvhView<'_, N>, rays: &[Ray]) -> usize;
+}
+
+macro_rules! implement_traces {
+    ($($n:literal)*) => {$(
+        impl Traces<$n> for Token {
+            fn trace(bvh: BvhView<'_, $n>, rays: &[Ray]) -> Vec<Hit> {
+                dispatch!(Level::new(), simd => closest_hits(simd, bvh, rays))
+            }
+            fn occluded(bvh: BvhView<'_, $n>, rays: &[Ray]) -> usize {
+                dispatch!(Level::new(), simd => count_occluded(simd, bvh, rays))
+            }
+        }
+    )*};
+}
+implement_traces!(4 8 16);
+
+fn trace<const N: usize>(bvh: BvhView<'_, N>, rays: &[Ray]) -> Vec<Hit>
+where
+    Token: Traces<N>,
+{
+    Token::trace(bvh, rays)
+}
+
+#[inline(always)]
+fn closest_hits<S: Lanes<N>, const N: usize>(
+    simd: S,
+    bvh: BvhView<'_, N>,
+    rays: &[Ray],
+) -> Vec<Hit> {
+    rays.iter()
+        .map(|ray| closest_hit(simd, bvh, ray, &AllHits))
+        .collect()
+}
+
+#[inline(always)]
+fn count_occluded<S: Lanes<N>, const N: usize>(
+    simd: S,
+    bvh: BvhView<'_, N>,
+    rays: &[Ray],
+) -> usize {
+    rays.iter()
+        .filter(|ray| any_hit(simd, bvh, ray, &AllHits))
+        .count()
+}
+
+fn camera_rays(width: usize, height: usize) -> Vec<Ray> {
+    let ray = |index: usize| {
+        let x = (index % width) as f32 / width as f32 * 2.0 - 1.0;
+        let y = 1.0 - (index / width) as f32 / height as f32 * 2.0;
+        Ray {
+            org: [0.0, 0.0, 3.0],
+            tmin: 0.0,
+            dir: [0.5 * x, 0.5 * y, -1.0],
+            tmax: f32::INFINITY,
+        }
+    };
+    (0..width * height).map(ray).collect()
+}
+
+/// Rays from the points hit, in random directions. Those that start inwards cross the sphere.
+fn bounced_rays(rays: &[Ray], hits: &[Hit]) -> Vec<Ray> {
+    let mut state = 1u64;
+    let mut random = || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 40) as f32 / (1 << 23) as f32 - 1.0
+    };
+    rays.iter()
+        .zip(hits)
+        .filter(|(_, hit)| hit.is_hit())
+        .map(|(ray, hit)| Ray {
+            org: [0, 1, 2].map(|axis| ray.org[axis] + hit.t * ray.dir[axis]),
+            tmin: 1e-3,
+            dir: [random(), random(), random()],
+            tmax: f32::INFINITY,
+        })
+        .collect()
+}
+
+fn bumpy_sphere(rings: usize, segments: usize) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
+    let point = |ring: usize, segment: usize| {
+        let theta = std::f32::consts::PI * ring as f32 / rings as f32;
+        let phi = std::f32::consts::TAU * segment as f32 / segments as f32;
+        let radius = 1.0 + 0.1 * (9.0 * theta).sin() * (11.0 * phi).sin();
+        let (s, c) = theta.sin_cos();
+        [radius * s * phi.cos(), radius * c, radius * s * phi.sin()]
+    };
+    let positions = (0..=rings)
+        .flat_map(|ring| (0..segments).map(move |segment| point(ring, segment)))
+        .collect();
+    let mut triangles = Vec::new();
+    for ring in 0..rings {
+        for segment in 0..segments {
+            let index = |r: usize, s: usize| (r * segments + s % segments) as u32;
+            let (a, b) = (index(ring, segment), index(ring, segment + 1));
+            let (c, d) = (index(ring + 1, segment), index(ring + 1, segment + 1));
+            triangles.extend([[a, b, c], [b, d, c]]);
+        }
+    }
+    (positions, triangles)
+}

@@ -1,0 +1,166 @@
+//! The binary tree over references: built by obvhs (PLOC with reinsertion), kept as plain
+//! topology, with boxes recomputed from the references.
+//!
+//! D. Meister, J. Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
+//! Construction", TVCG 24(3), 2018, and "Parallel Reinsertion for Bounding Volume Hierarchy
+//! Optimization", Eurographics 2018.
+
+use glam::Vec3A;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+
+use crate::build::Reference;
+use crate::{Bounds, BuildQuality};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BinaryNode {
+    /// Index of a reference.
+    Leaf(u32),
+    /// Indices of both children, greater than the node's own.
+    Inner(u32, u32),
+}
+
+/// The root comes first; without references there are no nodes.
+pub(crate) struct BinaryTree {
+    pub(crate) nodes: Vec<BinaryNode>,
+}
+
+impl BinaryTree {
+    pub(crate) fn build(references: &[Reference], quality: BuildQuality) -> BinaryTree {
+        if references.is_empty() {
+            return BinaryTree { nodes: Vec::new() };
+        }
+        // obvhs' presets `very_fast_build`, `medium_build` and `very_slow_build`, with one
+        // reference for each leaf: forming larger leaves is the collapse's business.
+        let (search, threshold, reinsertion, precision) = match quality {
+            BuildQuality::Fast => (PlocSearchDistance::Minimum, 0, 0.01, SortPrecision::U64),
+            BuildQuality::Medium => (PlocSearchDistance::Medium, 3, 0.05, SortPrecision::U64),
+            BuildQuality::Best => (PlocSearchDistance::Medium, 1, 1.0, SortPrecision::U128),
+        };
+        let boxes = unit_boxes(references);
+        let indices = (0..boxes.len() as u32).collect();
+        let mut bvh2 = PlocBuilder::new().build(search, &boxes, indices, precision, threshold);
+        reinsert(&mut bvh2, reinsertion);
+
+        // Preorder. Reinsertion leaves children before their parents.
+        let mut nodes = vec![BinaryNode::Leaf(0)];
+        let mut pending = vec![(0u32, 0usize)];
+        while let Some((source, target)) = pending.pop() {
+            let node = &bvh2.nodes[source as usize];
+            nodes[target] = if node.is_leaf() {
+                BinaryNode::Leaf(bvh2.primitive_indices[node.first_index as usize])
+            } else {
+                let left = nodes.len();
+                nodes.extend([BinaryNode::Leaf(0); 2]);
+                pending.push((node.first_index + 1, left + 1));
+                pending.push((node.first_index, left));
+                BinaryNode::Inner(left as u32, left as u32 + 1)
+            };
+        }
+        BinaryTree { nodes }
+    }
+
+    /// The box of each node.
+    pub(crate) fn bounds(&self, references: &[Reference]) -> Vec<Bounds> {
+        self.bottom_up(
+            |reference| references[reference as usize].bounds,
+            |left: &Bounds, right| left.union(right),
+        )
+    }
+
+    /// A value for each node, from its reference or from both children's values.
+    pub(crate) fn bottom_up<T: Clone>(
+        &self,
+        leaf: impl Fn(u32) -> T,
+        inner: impl Fn(&T, &T) -> T,
+    ) -> Vec<T> {
+        let mut values: Vec<Option<T>> = vec![None; self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            values[index] = Some(match *node {
+                BinaryNode::Leaf(reference) => leaf(reference),
+                BinaryNode::Inner(left, right) => {
+                    let value = |child: u32| values[child as usize].as_ref();
+                    let (left, right) = value(left).zip(value(right)).expect("children come later");
+                    inner(left, right)
+                }
+            });
+        }
+        values.into_iter().flatten().collect()
+    }
+
+    /// The references below a node, from left to right.
+    pub(crate) fn references_below(&self, root: u32) -> Vec<u32> {
+        let mut found = Vec::new();
+        let mut pending = vec![root];
+        while let Some(node) = pending.pop() {
+            match self.nodes[node as usize] {
+                BinaryNode::Leaf(reference) => found.push(reference),
+                BinaryNode::Inner(left, right) => pending.extend([right, left]),
+            }
+        }
+        found
+    }
+}
+
+/// obvhs' default sequence of reinsertions, the ratio of nodes considered shrinking with each.
+///
+/// One at a time, because obvhs searches with a stack of twice `max_depth`, which reinsertion does
+/// not keep up to date, and panics if that overflows. A tree that is already a list is left alone.
+fn reinsert(bvh2: &mut Bvh2, batch_ratio: f32) {
+    const HOPELESS_DEPTH: usize = 1000;
+    let mut optimizer = ReinsertionOptimizer::default();
+    for divisor in (1..32).step_by(2) {
+        let depth = depth(bvh2);
+        if depth > HOPELESS_DEPTH {
+            return;
+        }
+        bvh2.max_depth = bvh2.max_depth.max(depth);
+        optimizer.run(bvh2, batch_ratio, Some(vec![1.0 / divisor as f32]));
+    }
+}
+
+fn depth(bvh2: &Bvh2) -> usize {
+    let mut deepest = 0;
+    let mut pending = vec![(0u32, 1usize)];
+    while let Some((index, level)) = pending.pop() {
+        deepest = deepest.max(level);
+        let node = &bvh2.nodes[index as usize];
+        if !node.is_leaf() {
+            pending.extend([
+                (node.first_index, level + 1),
+                (node.first_index + 1, level + 1),
+            ]);
+        }
+    }
+    deepest
+}
+
+/// The references' boxes, moved and scaled into the unit cube if their areas could otherwise
+/// overflow or vanish. They only guide the topology.
+fn unit_boxes(references: &[Reference]) -> Vec<Aabb> {
+    let finite = |x: f32| x.clamp(f32::MIN, f32::MAX) as f64;
+    let all = references
+        .iter()
+        .fold(Bounds::EMPTY, |all, r| all.union(&r.bounds));
+    let extent = (0..3).fold(0.0, |extent, axis| {
+        finite(all.hi[axis]).max(-finite(all.lo[axis])).max(extent)
+    });
+    let (scale, offset) = if (1e-6..1e15).contains(&extent) {
+        (1.0, [0.0; 3])
+    } else {
+        let size = (0..3).fold(0.0, |size: f64, axis| {
+            size.max(finite(all.hi[axis]) - finite(all.lo[axis]))
+        });
+        (1.0 / size, all.lo.map(finite))
+    };
+    let place = |point: [f32; 3]| {
+        let moved = [0, 1, 2].map(|axis| ((finite(point[axis]) - offset[axis]) * scale) as f32);
+        Vec3A::from_array(moved)
+    };
+    references
+        .iter()
+        .map(|r| Aabb::new(place(r.bounds.lo), place(r.bounds.hi)))
+        .collect()
+}

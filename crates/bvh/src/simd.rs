@@ -1,0 +1,131 @@
+//! The vector operations that the kernels call, and nothing else, over fearless_simd's tokens.
+//!
+//! There is deliberately no fused multiply-add. Without it every instruction set gives the same
+//! bits, and nobody can decide an edge by the sign of a fused difference, which opens cracks.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x4, f32x8, f32x16, mask32x4, mask32x8, mask32x16};
+
+/// `N` lanes of `f32` on the instruction set that the token `Self` stands for; `N` is 4, 8 or 16.
+///
+/// Every fearless_simd token implements it at the three widths, so a function generic in the width
+/// says `S: Lanes<N>` and needs no other bound.
+pub trait Lanes<const N: usize>: fearless_simd::Simd {
+    /// `N` floats.
+    type Float: Copy;
+    /// `N` truth values.
+    type Mask: Copy;
+
+    /// `x` in every lane.
+    fn splat(self, x: f32) -> Self::Float;
+    /// The array's elements in order.
+    fn load(self, array: &[f32; N]) -> Self::Float;
+    /// Writes the lanes in order.
+    fn store(self, a: Self::Float, array: &mut [f32; N]);
+    /// `a + b`.
+    fn add(self, a: Self::Float, b: Self::Float) -> Self::Float;
+    /// `a - b`.
+    fn sub(self, a: Self::Float, b: Self::Float) -> Self::Float;
+    /// `a * b`.
+    fn mul(self, a: Self::Float, b: Self::Float) -> Self::Float;
+    /// `a / b`.
+    fn div(self, a: Self::Float, b: Self::Float) -> Self::Float;
+    /// `|a|`.
+    fn abs(self, a: Self::Float) -> Self::Float;
+    /// The smaller; `number`, which must not be NaN, where `a` is NaN.
+    fn min_number(self, a: Self::Float, number: Self::Float) -> Self::Float;
+    /// The greater; `number`, which must not be NaN, where `a` is NaN.
+    fn max_number(self, a: Self::Float, number: Self::Float) -> Self::Float;
+    /// `a <= b`; false where either is NaN.
+    fn le(self, a: Self::Float, b: Self::Float) -> Self::Mask;
+    /// `a < b`; false where either is NaN.
+    fn lt(self, a: Self::Float, b: Self::Float) -> Self::Mask;
+    /// Both.
+    fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Lane `i` in bit `i`.
+    fn bits(self, mask: Self::Mask) -> u32;
+}
+
+/// On x86 fearless_simd's `min` and `max` are `minps` and `maxps`, which return their *second*
+/// operand where either is NaN; its fallback uses `f32::min`, which drops NaN. Either way
+/// `a.min(number)` is `number` where `a` is NaN, in one instruction. Elsewhere (NEON's `fmin`
+/// propagates NaN) we ask for the precise operations.
+const SECOND_OPERAND_WINS: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
+
+macro_rules! implement_lanes {
+    ($n:literal, $float:ident, $mask:ident) => {
+        impl<S: fearless_simd::Simd> Lanes<$n> for S {
+            type Float = $float<S>;
+            type Mask = $mask<S>;
+
+            #[inline(always)]
+            fn splat(self, x: f32) -> $float<S> {
+                $float::splat(self, x)
+            }
+            #[inline(always)]
+            fn load(self, array: &[f32; $n]) -> $float<S> {
+                $float::load_array_ref(self, array)
+            }
+            #[inline(always)]
+            fn store(self, a: $float<S>, array: &mut [f32; $n]) {
+                a.store_array(array)
+            }
+            #[inline(always)]
+            fn add(self, a: $float<S>, b: $float<S>) -> $float<S> {
+                a + b
+            }
+            #[inline(always)]
+            fn sub(self, a: $float<S>, b: $float<S>) -> $float<S> {
+                a - b
+            }
+            #[inline(always)]
+            fn mul(self, a: $float<S>, b: $float<S>) -> $float<S> {
+                a * b
+            }
+            #[inline(always)]
+            fn div(self, a: $float<S>, b: $float<S>) -> $float<S> {
+                a / b
+            }
+            #[inline(always)]
+            fn abs(self, a: $float<S>) -> $float<S> {
+                a.abs()
+            }
+            #[inline(always)]
+            fn min_number(self, a: $float<S>, number: $float<S>) -> $float<S> {
+                if SECOND_OPERAND_WINS {
+                    a.min(number)
+                } else {
+                    a.min_precise(number)
+                }
+            }
+            #[inline(always)]
+            fn max_number(self, a: $float<S>, number: $float<S>) -> $float<S> {
+                if SECOND_OPERAND_WINS {
+                    a.max(number)
+                } else {
+                    a.max_precise(number)
+                }
+            }
+            #[inline(always)]
+            fn le(self, a: $float<S>, b: $float<S>) -> $mask<S> {
+                a.simd_le(b)
+            }
+            #[inline(always)]
+            fn lt(self, a: $float<S>, b: $float<S>) -> $mask<S> {
+                a.simd_lt(b)
+            }
+            #[inline(always)]
+            fn and(self, a: $mask<S>, b: $mask<S>) -> $mask<S> {
+                a & b
+            }
+            #[inline(always)]
+            fn bits(self, mask: $mask<S>) -> u32 {
+                mask.to_bitmask() as u32
+            }
+        }
+    };
+}
+
+implement_lanes!(4, f32x4, mask32x4);
+implement_lanes!(8, f32x8, mask32x8);
+implement_lanes!(16, f32x16, mask32x16);
