@@ -77,12 +77,7 @@ pub(super) fn light(
         );
         return Ok(None);
     }
-    if light.range.is_some() {
-        warnings.push(
-            &*at,
-            "range is ignored: light falls off with the square of the distance",
-        );
-    }
+    // `range` is a hint for rasterisers that cut lights off; light falls off with the square here.
     let is_valid = |value: f32| value.is_finite() && value >= 0.0;
     let mut intensity = light.color.map(|channel| channel * light.intensity);
     if !(is_valid(light.intensity) && intensity.into_iter().chain(light.color).all(is_valid)) {

@@ -1,7 +1,7 @@
 //! Importers: scene files of others as a [`SceneDesc`].
 //!
 //! First step of the chain file → description → effects → plan → program. `.gltf` and `.glb` are read by
-//! the `gltf_*` modules, `.obj` with its `.mtl` by the `obj*` ones; both meet in [`triangles`], [`images`]
+//! the `gltf_*` modules, `.obj` with its `.mtl` by the `obj*` and `mtl` ones; both meet in [`triangles`], [`images`]
 //! and [`instances`]. Files are not trusted: every index and size is checked before it is used, decoded
 //! data is charged to a [`budget`], and a malformed file ends in an [`ImportError`], never in a panic.
 //! What a file asks for and we do not render is a warning; under [`ImportOptions::strict`] an error.
@@ -26,7 +26,11 @@ mod gltf_textures;
 mod guard;
 mod images;
 mod instances;
+mod mtl;
 mod normals;
+mod obj;
+mod obj_materials;
+mod obj_source;
 mod tangents;
 pub(crate) mod texture_uses;
 mod triangles;
@@ -53,6 +57,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
         .to_ascii_lowercase();
     let mut scene = match extension.as_str() {
         "gltf" | "glb" => gltf_scene::import(path, &mut warnings)?,
+        "obj" => obj::import(path, &mut warnings)?,
         _ => {
             return Err(ImportError::UnknownFormat {
                 file: path.to_owned(),
