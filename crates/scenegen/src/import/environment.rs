@@ -1,0 +1,79 @@
+//! The environment image that the user gave.
+
+use std::path::PathBuf;
+
+use super::error::{Fault, ImportError, Warnings};
+use super::{files, images};
+use crate::desc::{EnvironmentDesc, SceneDesc, Texels};
+
+/// Light from infinitely far away, from a latitude-longitude image.
+#[derive(Debug, Clone)]
+pub struct EnvironmentOptions {
+    /// A `.hdr`, `.exr` or 8-bit image; the latter is decoded from sRGB.
+    pub path: PathBuf,
+    /// Factor on radiance.
+    pub strength: f32,
+    /// Turn about +Y.
+    pub rotation_degrees: f32,
+}
+
+const ADVICE: &str = "give a latitude-longitude image as .hdr, .exr or .png";
+
+/// Reads the image and appends it to the scene.
+pub(super) fn append(
+    scene: &mut SceneDesc,
+    options: &EnvironmentOptions,
+    warnings: &mut Warnings,
+) -> Result<(), ImportError> {
+    let file = &options.path;
+    let fault = |problem: String| {
+        Fault::new("environment", problem)
+            .advise(ADVICE)
+            .in_file(file)
+    };
+    if !(options.strength.is_finite() && options.strength >= 0.0) {
+        return Err(fault(format!(
+            "the strength {} is not a number of at least 0",
+            options.strength
+        )));
+    }
+    if !options.rotation_degrees.is_finite() {
+        return Err(fault("the rotation is not a finite number".into()));
+    }
+    let bytes = files::read(file).map_err(|message| ImportError::Io {
+        file: file.clone(),
+        message,
+    })?;
+    let extension = file.extension().and_then(|extension| extension.to_str());
+    let mut decoded = images::decode_one(&bytes, extension)
+        .map_err(|problem| fault(format!("the image {problem}")))?;
+    let place = format!("environment \"{}\"", file.display());
+    decoded.warn(&place, warnings);
+    if let Texels::Rgba8(texels) = &decoded.texels {
+        decoded.texels = Texels::RgbaF32(texels.iter().map(|&texel| from_srgb(texel)).collect());
+    }
+    let name = file
+        .file_name()
+        .unwrap_or(file.as_os_str())
+        .to_string_lossy()
+        .into_owned();
+    scene.images.push(decoded.into_desc(name));
+    scene.environment = Some(EnvironmentDesc {
+        image: scene.images.len() - 1,
+        strength: options.strength,
+        rotation: options.rotation_degrees.to_radians(),
+    });
+    Ok(())
+}
+
+fn from_srgb([r, g, b, a]: [u8; 4]) -> [f32; 4] {
+    let linear = |code: u8| {
+        let encoded = f64::from(code) / 255.0;
+        (if encoded <= 0.04045 {
+            encoded / 12.92
+        } else {
+            ((encoded + 0.055) / 1.055).powf(2.4)
+        }) as f32
+    };
+    [linear(r), linear(g), linear(b), f32::from(a) / 255.0]
+}

@@ -1,0 +1,162 @@
+//! glTF mesh primitives: attributes and topology.
+
+use glam::{Vec2, Vec3, Vec4};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{Accessor, Index};
+
+use super::error::{Fault, Warnings};
+use super::gltf_accessors::Accessors;
+use super::triangles::RawMesh;
+
+/// Reads a primitive; `None`, after a warning, where it has nothing to render.
+pub(super) fn read(
+    primitive: &Primitive,
+    accessors: &mut Accessors<'_>,
+    at: &str,
+    warnings: &mut Warnings,
+) -> Result<Option<RawMesh>, Fault> {
+    if let Some(extensions) = &primitive.extensions {
+        super::gltf_extensions::warn_about_others(&extensions.others, &[], at, warnings);
+    }
+    let mode = match primitive.mode {
+        Checked::Valid(mode) => mode,
+        Checked::Invalid => return Err(Fault::new(format!("{at}/mode"), "is unknown")),
+    };
+    if matches!(
+        mode,
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
+    ) {
+        warnings.push(at, "points and lines are not rendered");
+        return Ok(None);
+    }
+    if primitive
+        .targets
+        .as_ref()
+        .is_some_and(|targets| !targets.is_empty())
+    {
+        warnings.push(
+            at,
+            "morph targets are not supported; shown in its base shape",
+        );
+    }
+    let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+    let Some(positions) = attribute(Semantic::Positions) else {
+        warnings.push(at, "has no POSITION and is skipped");
+        return Ok(None);
+    };
+
+    let mut reader = Attributes {
+        accessors,
+        at,
+        count: None,
+    };
+    let positions: Vec<Vec3> = reader.vectors(positions, "POSITION", Vec3::from_array)?;
+    let mut optional3 = |semantic, name| {
+        attribute(semantic)
+            .map(|index| reader.vectors(index, name, Vec3::from_array))
+            .transpose()
+    };
+    let normals = optional3(Semantic::Normals, "NORMAL")?;
+    let tangents = attribute(Semantic::Tangents)
+        .map(|index| reader.vectors(index, "TANGENT", Vec4::from_array))
+        .transpose()?;
+    let mut uvs = |set| {
+        attribute(Semantic::TexCoords(set))
+            .map(|index| reader.vectors(index, &format!("TEXCOORD_{set}"), Vec2::from_array))
+            .transpose()
+    };
+    let uvs = [uvs(0)?, uvs(1)?];
+    let colors = attribute(Semantic::Colors(0))
+        .map(|index| reader.colors(index))
+        .transpose()?;
+
+    let corners = match primitive.indices {
+        Some(indices) => accessors.indices(indices, &format!("{at}/indices"))?,
+        None => {
+            accessors.budget.charge(positions.len() as u64, 4, at)?;
+            (0..positions.len() as u32).collect()
+        }
+    };
+    let out_of_range = corners
+        .iter()
+        .position(|&corner| corner as usize >= positions.len());
+    if let Some(position) = out_of_range {
+        let problem = format!(
+            "index {} at {position} is beyond the {} vertices",
+            corners[position],
+            positions.len()
+        );
+        return Err(Fault::new(format!("{at}/indices"), problem));
+    }
+    accessors.budget.charge(corners.len() as u64, 12, at)?;
+    let triangles = assemble(mode, &corners, at, warnings);
+    Ok(Some(RawMesh {
+        positions,
+        normals,
+        tangents,
+        uvs,
+        colors,
+        triangles,
+    }))
+}
+
+struct Attributes<'r, 'a> {
+    accessors: &'r mut Accessors<'a>,
+    at: &'r str,
+    /// Number of vertices, known after the first attribute.
+    count: Option<usize>,
+}
+
+impl Attributes<'_, '_> {
+    fn vectors<const N: usize, V>(
+        &mut self,
+        index: Index<Accessor>,
+        name: &str,
+        vector: impl Fn([f32; N]) -> V,
+    ) -> Result<Vec<V>, Fault> {
+        let user = format!("{}/attributes/{name}", self.at);
+        let values = self.accessors.floats::<N>(index, &user)?;
+        let expected = *self.count.get_or_insert(values.len());
+        if values.len() != expected {
+            let problem = format!("has {} elements, but POSITION has {expected}", values.len());
+            return Err(Fault::new(user, problem));
+        }
+        Ok(values.into_iter().map(vector).collect())
+    }
+
+    fn colors(&mut self, index: Index<Accessor>) -> Result<Vec<Vec4>, Fault> {
+        match self.accessors.components(index, self.at)? {
+            3 => self.vectors(index, "COLOR_0", |rgb| Vec3::from_array(rgb).extend(1.0)),
+            _ => self.vectors(index, "COLOR_0", Vec4::from_array),
+        }
+    }
+}
+
+/// Triangles of a list, strip or fan, by the equations of glTF 2.0 section 3.7.2.1.
+fn assemble(mode: Mode, corners: &[u32], at: &str, warnings: &mut Warnings) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::Triangles => {
+            let (triangles, rest) = corners.as_chunks::<3>();
+            if !rest.is_empty() {
+                warnings.push(
+                    at,
+                    format!("the last {} indices make no triangle", rest.len()),
+                );
+            }
+            triangles.to_vec()
+        }
+        Mode::TriangleStrip => corners
+            .windows(3)
+            .enumerate()
+            .map(|(i, window)| [window[0], window[1 + i % 2], window[2 - i % 2]])
+            .collect(),
+        Mode::TriangleFan => {
+            let rim = corners.get(1..).unwrap_or_default();
+            rim.windows(2)
+                .map(|edge| [edge[0], edge[1], corners[0]])
+                .collect()
+        }
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
+    }
+}

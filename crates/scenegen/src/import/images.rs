@@ -1,0 +1,242 @@
+//! Decoding images: within a budget, in parallel, and never a reason to give a scene up.
+
+use std::borrow::Cow;
+use std::io::Cursor;
+
+use exr::prelude::{ReadChannels, ReadLayers};
+use image::{DynamicImage, ImageFormat, ImageReader};
+use rayon::prelude::*;
+
+use super::budget::Budget;
+use super::error::Warnings;
+use super::guard::without_panic;
+use crate::desc::{ImageDesc, Texels};
+
+/// The largest width and height.
+const MAX_EXTENT: u32 = 16384;
+
+/// An image to decode.
+pub(super) struct ImageRequest<'a> {
+    /// For messages and the scene.
+    pub(super) name: String,
+    /// JSON path or line of the reference.
+    pub(super) place: String,
+    /// The encoded bytes, or why there are none.
+    pub(super) bytes: Result<Cow<'a, [u8]>, String>,
+    /// File extension, for formats that cannot be told from their content (TGA).
+    pub(super) extension: Option<String>,
+    /// Whether it holds normals, so that a stand-in is flat rather than white.
+    pub(super) is_normal_map: bool,
+}
+
+/// How a file is encoded.
+#[derive(Clone, Copy)]
+enum Encoding {
+    Image(ImageFormat),
+    OpenExr,
+}
+
+/// Decodes all; one that fails becomes a texel that changes nothing, and a warning.
+pub(super) fn decode_all(
+    requests: Vec<ImageRequest<'_>>,
+    warnings: &mut Warnings,
+) -> Vec<ImageDesc> {
+    let mut budget = Budget::images();
+    let checked: Vec<_> = requests
+        .into_iter()
+        .map(|request| {
+            let encoding = match &request.bytes {
+                Ok(bytes) => inspect(bytes, request.extension.as_deref(), &mut budget),
+                Err(problem) => Err(problem.clone()),
+            };
+            (request, encoding)
+        })
+        .collect();
+    let decoded: Vec<_> = checked
+        .into_par_iter()
+        .map(|(request, encoding)| {
+            let result = match (&request.bytes, encoding) {
+                (Ok(bytes), Ok(encoding)) => without_panic(|| decode(bytes, encoding)),
+                (_, Err(problem)) => Err(problem),
+                (Err(problem), _) => Err(problem.clone()),
+            };
+            (request.name, request.place, request.is_normal_map, result)
+        })
+        .collect();
+
+    decoded
+        .into_iter()
+        .map(|(name, place, is_normal_map, result)| match result {
+            Ok(decoded) => {
+                decoded.warn(&place, warnings);
+                decoded.into_desc(name)
+            }
+            Err(problem) => {
+                let color = if is_normal_map {
+                    [128, 128, 255, 255]
+                } else {
+                    [255; 4]
+                };
+                let stand_in = if is_normal_map {
+                    "no normal map"
+                } else {
+                    "white"
+                };
+                warnings.push(place, format!("image {problem}; {stand_in} is used"));
+                ImageDesc {
+                    name,
+                    width: 1,
+                    height: 1,
+                    texels: Texels::Rgba8(vec![color]),
+                }
+            }
+        })
+        .collect()
+}
+
+/// Decodes one image that the scene cannot do without.
+pub(super) fn decode_one(bytes: &[u8], extension: Option<&str>) -> Result<Decoded, String> {
+    let encoding = inspect(bytes, extension, &mut Budget::images())?;
+    without_panic(|| decode(bytes, encoding))
+}
+
+/// A decoded image without a name.
+pub(super) struct Decoded {
+    width: u32,
+    height: u32,
+    /// The texels.
+    pub(super) texels: Texels,
+    /// How many float texels were negative, infinite or NaN and are 0 now.
+    replaced: usize,
+}
+
+impl Decoded {
+    /// Reports replaced texels.
+    pub(super) fn warn(&self, place: &str, warnings: &mut Warnings) {
+        if self.replaced > 0 {
+            let message = format!(
+                "{} texels have NaN, infinite or negative values; 0 is used",
+                self.replaced
+            );
+            warnings.push(place, message);
+        }
+    }
+
+    /// Names it.
+    pub(super) fn into_desc(self, name: String) -> ImageDesc {
+        ImageDesc {
+            name,
+            width: self.width,
+            height: self.height,
+            texels: self.texels,
+        }
+    }
+}
+
+/// Finds the encoding and refuses sizes beyond the limits, before anything is allocated.
+fn inspect(bytes: &[u8], extension: Option<&str>, budget: &mut Budget) -> Result<Encoding, String> {
+    let (encoding, width, height) = without_panic(|| {
+        if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+            let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)
+                .map_err(unreadable)?;
+            let size = meta.headers.first().ok_or("has no layers")?.layer_size;
+            let extent = |size: usize| u32::try_from(size).map_err(|_| "is too large");
+            return Ok((
+                Encoding::OpenExr,
+                extent(size.width())?,
+                extent(size.height())?,
+            ));
+        }
+        let mut reader = ImageReader::new(Cursor::new(bytes));
+        if let Some(format) = extension.and_then(ImageFormat::from_extension) {
+            reader.set_format(format);
+        }
+        let reader = reader.with_guessed_format().map_err(unreadable)?;
+        let format = reader.format().ok_or("has an unknown format")?;
+        let (width, height) = reader.into_dimensions().map_err(unreadable)?;
+        Ok((Encoding::Image(format), width, height))
+    })?;
+    if width == 0 || height == 0 || width > MAX_EXTENT || height > MAX_EXTENT {
+        return Err(format!(
+            "has {width} × {height} texels; 1 to {MAX_EXTENT} each way are read"
+        ));
+    }
+    let texel_bytes = match encoding {
+        Encoding::OpenExr | Encoding::Image(ImageFormat::Hdr) => 16,
+        Encoding::Image(_) => 4,
+    };
+    budget
+        .charge(u64::from(width) * u64::from(height), texel_bytes, "images")
+        .map_err(|fault| format!("makes {}", fault.problem))?;
+    Ok(encoding)
+}
+
+fn unreadable(error: impl std::fmt::Display) -> String {
+    format!("cannot be read ({error})")
+}
+
+fn decode(bytes: &[u8], encoding: Encoding) -> Result<Decoded, String> {
+    let format = match encoding {
+        Encoding::OpenExr => return decode_exr(bytes),
+        Encoding::Image(format) => format,
+    };
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(1 << 30);
+    reader.limits(limits);
+    let image = reader.decode().map_err(unreadable)?;
+    let (width, height) = (image.width(), image.height());
+    Ok(match image {
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
+            let texels = image.into_rgba32f().pixels().map(|pixel| pixel.0).collect();
+            finite(width, height, texels)
+        }
+        // 16-bit images are rounded to 8 bits: whether they are sRGB-encoded is known only by their use.
+        _ => {
+            let texels = image.into_rgba8().pixels().map(|pixel| pixel.0).collect();
+            Decoded {
+                width,
+                height,
+                texels: Texels::Rgba8(texels),
+                replaced: 0,
+            }
+        }
+    })
+}
+
+fn decode_exr(bytes: &[u8]) -> Result<Decoded, String> {
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgba_channels(
+            |size, _| (size.width(), vec![[0.0_f32; 4]; size.area()]),
+            |(width, texels), at, (r, g, b, a): (f32, f32, f32, f32)| {
+                texels[at.y() * *width + at.x()] = [r, g, b, a]
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(unreadable)?;
+    let size = image.layer_data.size;
+    let (_, texels) = image.layer_data.channel_data.pixels;
+    Ok(finite(size.width() as u32, size.height() as u32, texels))
+}
+
+fn finite(width: u32, height: u32, mut texels: Vec<[f32; 4]>) -> Decoded {
+    let mut replaced = 0;
+    for texel in &mut texels {
+        let is_valid = |value: f32| value.is_finite() && value >= 0.0;
+        if !texel.iter().all(|&value| is_valid(value)) {
+            replaced += 1;
+            *texel = texel.map(|value| if is_valid(value) { value } else { 0.0 });
+        }
+    }
+    Decoded {
+        width,
+        height,
+        texels: Texels::RgbaF32(texels),
+        replaced,
+    }
+}

@@ -1,0 +1,91 @@
+//! Importers: scene files of others as a [`SceneDesc`].
+//!
+//! First step of the chain file → description → effects → plan → program. `.gltf` and `.glb` are read by
+//! the `gltf_*` modules, `.obj` with its `.mtl` by the `obj*` and `mtl` ones; both meet in [`triangles`], [`images`]
+//! and [`instances`]. Files are not trusted: every index and size is checked before it is used, decoded
+//! data is charged to a [`budget`], and a malformed file ends in an [`ImportError`], never in a panic.
+//! What a file asks for and we do not render is a warning; under [`ImportOptions::strict`] an error.
+
+use std::path::Path;
+
+use crate::desc::SceneDesc;
+
+mod budget;
+mod environment;
+mod error;
+mod files;
+mod gltf_accessors;
+mod gltf_document;
+mod gltf_extensions;
+mod gltf_lights;
+mod gltf_materials;
+mod gltf_meshes;
+mod gltf_nodes;
+mod gltf_scene;
+mod gltf_textures;
+mod guard;
+mod images;
+mod instances;
+mod mtl;
+mod normals;
+mod obj;
+mod obj_materials;
+mod obj_source;
+mod tangents;
+pub(crate) mod texture_uses;
+mod triangles;
+
+pub use environment::EnvironmentOptions;
+pub use error::ImportError;
+
+/// What the user wants besides the file.
+#[derive(Debug, Clone, Default)]
+pub struct ImportOptions {
+    /// Light from infinitely far away.
+    pub environment: Option<EnvironmentOptions>,
+    /// Whether warnings are errors.
+    pub strict: bool,
+}
+
+/// Reads a scene; its extension says how.
+pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportError> {
+    let mut warnings = error::Warnings::default();
+    let extension = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase();
+    let mut scene = match extension.as_str() {
+        "gltf" | "glb" => gltf_scene::import(path, &mut warnings)?,
+        "obj" => obj::import(path, &mut warnings)?,
+        _ => {
+            return Err(ImportError::UnknownFormat {
+                file: path.to_owned(),
+            });
+        }
+    };
+    scene.name = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    if let Some(environment) = &options.environment {
+        environment::append(&mut scene, environment, &mut warnings)?;
+    }
+    scene.warnings = warnings.0;
+    if let Err(violation) = scene.validate() {
+        // Values the checks above did not foresee; better refused here than rendered as NaN.
+        return Err(gltf_document::malformed(
+            path,
+            &violation.place,
+            &violation.problem,
+        ));
+    }
+    if options.strict && !scene.warnings.is_empty() {
+        return Err(ImportError::Strict {
+            file: path.to_owned(),
+            warnings: scene.warnings,
+        });
+    }
+    Ok(scene)
+}

@@ -1,0 +1,136 @@
+//! Every model of the shared scenes is imported, and its counts agree with an independent reading.
+
+use std::path::{Path, PathBuf};
+
+use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::import::{ImportOptions, import};
+use serde_json::Value;
+
+mod common;
+
+/// Files that require what we cannot read, and the extension their error must name.
+const REFUSED: &[(&str, &str)] = &[
+    ("BoxMeshopt.glb", "EXT_meshopt_compression"),
+    (
+        "14_emission_strength.gltf",
+        "KHR_materials_pbrSpecularGlossiness",
+    ),
+];
+
+fn models(folder: &Path) -> Vec<PathBuf> {
+    common::files_under(folder)
+        .into_iter()
+        .filter(|path| matches!(common::extension(path).as_str(), "gltf" | "glb" | "obj"))
+        .collect()
+}
+
+#[test]
+fn all_good_models_are_imported() {
+    let Some(scenes) = common::scenes() else {
+        return;
+    };
+    for folder in ["materials", "interiors", "bench"] {
+        for path in models(&scenes.join(folder)) {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let started = std::time::Instant::now();
+            let result = import(&path, &ImportOptions::default());
+            match REFUSED.iter().find(|(refused, _)| *refused == name) {
+                Some((_, extension)) => {
+                    let message = result.expect_err(&name).to_string();
+                    assert!(message.contains(extension), "{name}: {message}");
+                }
+                None => {
+                    let scene = result.unwrap_or_else(|error| panic!("{name}: {error}"));
+                    let milliseconds = started.elapsed().as_millis();
+                    println!("{name}: {milliseconds} ms, {}", summary(&scene));
+                    check_counts(&path, &scene);
+                }
+            }
+        }
+    }
+}
+
+fn summary(scene: &SceneDesc) -> String {
+    let warnings: String = scene
+        .warnings
+        .iter()
+        .map(|w| format!("\n    {}: {}", w.place, w.message))
+        .collect();
+    format!(
+        "{} triangles, {} meshes, {} instances, {} materials, {} textures, {} images, {} lights, {} cameras{warnings}",
+        scene
+            .meshes
+            .iter()
+            .map(|mesh| mesh.triangles.len())
+            .sum::<usize>(),
+        scene.meshes.len(),
+        scene.instances.len(),
+        scene.materials.len(),
+        scene.textures.len(),
+        scene.images.len(),
+        scene.lights.len(),
+        scene.cameras.len(),
+    )
+}
+
+/// Compares with counts taken from the JSON alone, for files whose meshes are all in the scene.
+fn check_counts(path: &Path, scene: &SceneDesc) {
+    let Some(json) = common::read_json(path) else {
+        return;
+    };
+    let empty = Vec::new();
+    let array = |name: &str| json[name].as_array().unwrap_or(&empty);
+    let mut triangles = 0;
+    let mut primitives = 0;
+    let mut materials = std::collections::BTreeSet::new();
+    for mesh in array("meshes") {
+        for primitive in mesh["primitives"].as_array().unwrap() {
+            let accessor = match &primitive["indices"] {
+                Value::Null => &primitive["attributes"]["POSITION"],
+                indices => indices,
+            };
+            let count = array("accessors")[accessor.as_u64().unwrap() as usize]["count"]
+                .as_u64()
+                .unwrap();
+            triangles += match primitive["mode"].as_u64().unwrap_or(4) {
+                4 => count / 3,
+                5 | 6 => count - 2,
+                _ => continue,
+            };
+            primitives += 1;
+            materials.insert(primitive["material"].as_u64());
+        }
+    }
+    let mut used = std::collections::BTreeSet::new();
+    used.extend(
+        array("nodes")
+            .iter()
+            .filter_map(|node| node["mesh"].as_u64()),
+    );
+    if used.len() != array("meshes").len() {
+        println!(
+            "skipped: the counts of {}, which has meshes outside the scene",
+            path.display()
+        );
+        return;
+    }
+    let imported: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    assert_eq!(
+        imported as u64,
+        triangles,
+        "triangles of {}",
+        path.display()
+    );
+    assert_eq!(
+        scene.meshes.len(),
+        primitives,
+        "meshes of {}",
+        path.display()
+    );
+    assert_eq!(
+        scene.materials.len(),
+        materials.len(),
+        "materials of {}",
+        path.display()
+    );
+}
