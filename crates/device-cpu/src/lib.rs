@@ -1,1 +1,27 @@
-//! Under construction.
+//! The CPU device: tiles in parallel; within a tile, streams of paths that are traced together, sorted by program,
+//! shaded in vector lanes, and compacted (thesis, section 4.2).
+//!
+//! [`TileRenderer`] is the seam: [`Interpreter`] runs a scene's structure as boxed nodes, [`compiled_scene!`] makes
+//! one from emitted code, and [`plugin`] loads one from a shared library. All three run the same
+//! [`tile::render_tile`] and give the same bits.
+
+mod device;
+mod interpreter;
+pub mod lanes;
+pub mod plugin;
+mod shade;
+mod stream;
+pub mod tile;
+
+pub use device::{CpuDevice, Progress, RenderOptions, RenderReport};
+pub use interpreter::Interpreter;
+pub use lanes::{AnyBvh, LaneCount};
+pub use tile::{Counters, SceneView, TileJob, TileRenderer};
+
+/// What emitted code needs, under stable names.
+#[doc(hidden)]
+pub mod generated {
+    pub use fearless_simd;
+    pub use residual_bvh::{Culling, Hit, HitFilter, Ray};
+    pub use residual_render as render;
+}

@@ -30,7 +30,7 @@ pub fn is_there<'a, A: ScalarSource<Scalar<'a>>, C: ScalarSource<Scalar<'a>>>(
 ) -> bool {
     let d = Scalar::new(buffers);
     let word = crate::domain::Uint;
-    let place = surface::Hit { t: hit.t, u: hit.u, v: hit.v, prim: word(hit.prim) };
+    let place = surface::Hit { u: hit.u, v: hit.v, prim: word(hit.prim) };
     let [x, y, z] = ray.dir;
     let surface = Surface::new(d, attributes, &place, vec3(x, y, z));
     let alpha = alpha.scalar(d, &surface);

@@ -1,4 +1,6 @@
 //! The film: per-pixel sums and variances, in `f64`, so that neither saturates nor cancels (hard cases S-01, S-02).
+//!
+//! Pixels are kept tile by tile, so that a device's threads each own the tiles they render and share nothing.
 
 /// What is kept of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -11,14 +13,81 @@ struct Pixel {
     deviations: f64,
 }
 
+impl Pixel {
+    /// Adds sample number `n`, counted from 1.
+    fn add(&mut self, rgb: [f64; 3], n: f64) {
+        for (sum, c) in self.sum.iter_mut().zip(rgb) {
+            *sum += c;
+        }
+        let luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+        let delta = luminance - self.mean;
+        self.mean += delta / n;
+        self.deviations += delta * (luminance - self.mean);
+    }
+}
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TileRect {
+    /// Leftmost column.
+    pub x: u32,
+    /// Topmost row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl TileRect {
+    /// How many pixels it has.
+    pub fn area(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// One tile of a [`Film`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmTile {
+    rect: TileRect,
+    pixels: Vec<Pixel>,
+    samples: u64,
+    invalid: u64,
+}
+
+impl FilmTile {
+    /// Where it lies.
+    pub fn rect(&self) -> TileRect {
+        self.rect
+    }
+
+    /// Adds samples to every pixel; `radiance[sample][row][column][channel]`. Samples of a pixel are added in
+    /// their order, so that the film depends neither on the tiling nor on threads.
+    ///
+    /// # Panics
+    /// If `radiance` is not a whole number of samples of the tile.
+    pub fn add(&mut self, radiance: &[f32]) {
+        assert_eq!(radiance.len() % (self.rect.area() * 3), 0, "whole samples of the tile");
+        for sample in radiance.chunks_exact(self.rect.area() * 3) {
+            self.samples += 1;
+            let n = self.samples as f64;
+            for (pixel, rgb) in self.pixels.iter_mut().zip(sample.chunks_exact(3)) {
+                let valid = rgb.iter().all(|c| c.is_finite() && *c >= 0.0);
+                self.invalid += u64::from(!valid);
+                let rgb = [rgb[0], rgb[1], rgb[2]];
+                pixel.add(if valid { rgb.map(f64::from) } else { [0.0; 3] }, n);
+            }
+        }
+    }
+}
+
 /// An image being accumulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     width: u32,
     height: u32,
-    samples: u64,
-    pixels: Vec<Pixel>,
-    invalid: u64,
+    tiles: Vec<FilmTile>,
+    tile_size: u32,
 }
 
 /// How far an image is from its limit, from its own variance.
@@ -31,10 +100,20 @@ pub struct ErrorEstimate {
 }
 
 impl Film {
-    /// A black film.
-    pub fn new(width: u32, height: u32) -> Self {
-        let pixels = vec![Pixel::default(); width as usize * height as usize];
-        Self { width, height, samples: 0, pixels, invalid: 0 }
+    /// A black film, cut into square tiles of `tile_size` pixels (less at the right and bottom edges).
+    pub fn new(width: u32, height: u32, tile_size: u32) -> Self {
+        let starts = |length: u32| (0..length).step_by(tile_size as usize);
+        let tile = |x: u32, y: u32| {
+            let rect = TileRect {
+                x,
+                y,
+                width: tile_size.min(width - x),
+                height: tile_size.min(height - y),
+            };
+            FilmTile { rect, pixels: vec![Pixel::default(); rect.area()], samples: 0, invalid: 0 }
+        };
+        let tiles = starts(height).flat_map(|y| starts(width).map(move |x| tile(x, y))).collect();
+        Self { width, height, tiles, tile_size }
     }
 
     /// Pixels a row.
@@ -47,83 +126,112 @@ impl Film {
         self.height
     }
 
-    /// Samples a pixel so far.
+    /// The tiles, to be rendered into.
+    pub fn tiles_mut(&mut self) -> &mut [FilmTile] {
+        &mut self.tiles
+    }
+
+    /// Samples a pixel so far; the fewest of any tile.
     pub fn samples(&self) -> u64 {
-        self.samples
+        self.tiles.iter().map(|tile| tile.samples).min().unwrap_or(0)
     }
 
     /// Samples that were NaN, infinite or negative. They count as black; a healthy render has none.
     pub fn invalid_samples(&self) -> u64 {
-        self.invalid
+        self.tiles.iter().map(|tile| tile.invalid).sum()
     }
 
-    /// Adds `count` samples to every pixel of the rectangle at (x, y); `radiance[sample][row][column][channel]`.
-    ///
-    /// Tiles of one pass may come in any order; the samples of a pixel are always added in theirs, so the film
-    /// does not depend on tiles or threads. Call [`Film::finish_pass`] when all pixels have theirs.
-    pub fn add_tile(&mut self, [x, y]: [u32; 2], [width, height]: [u32; 2], radiance: &[f32]) {
-        let area = width as usize * height as usize;
-        for (pass, samples) in radiance.chunks_exact(area * 3).enumerate() {
-            let n = (self.samples + pass as u64 + 1) as f64;
-            for (place, sample) in samples.chunks_exact(3).enumerate() {
-                let column = x as usize + place % width as usize;
-                let row = y as usize + place / width as usize;
-                let rgb = [sample[0], sample[1], sample[2]];
-                let valid = rgb.iter().all(|c| c.is_finite() && *c >= 0.0);
-                self.invalid += u64::from(!valid);
-                let rgb = if valid { rgb.map(f64::from) } else { [0.0; 3] };
-                self.pixels[row * self.width as usize + column].add(rgb, n);
-            }
-        }
-    }
-
-    /// `count` more samples are in every pixel.
-    pub fn finish_pass(&mut self, count: u64) {
-        self.samples += count;
+    /// Pixels with their number of samples, row by row from the top, whatever the tiling.
+    fn pixels(&self) -> impl Iterator<Item = (&Pixel, f64)> {
+        let per_row = self.width.div_ceil(self.tile_size);
+        (0..self.height).flat_map(move |y| {
+            (0..self.width).map(move |x| {
+                let tile = &self.tiles[(y / self.tile_size * per_row + x / self.tile_size) as usize];
+                let place = (y - tile.rect.y) * tile.rect.width + (x - tile.rect.x);
+                (&tile.pixels[place as usize], tile.samples as f64)
+            })
+        })
     }
 
     /// The image: mean linear red, green, blue, row by row from the top.
     pub fn image(&self) -> Vec<[f32; 3]> {
-        let scale = 1.0 / self.samples.max(1) as f64;
-        self.pixels.iter().map(|p| p.sum.map(|c| (c * scale) as f32)).collect()
+        self.pixels().map(|(p, n)| p.sum.map(|c| (c / n.max(1.0)) as f32)).collect()
     }
 
     /// Mean of the whole image.
     pub fn mean(&self) -> [f64; 3] {
-        let scale = 1.0 / (self.samples.max(1) as f64 * self.pixels.len() as f64);
-        let sum = self.pixels.iter().fold([0.0; 3], |sum, p| [0, 1, 2].map(|k| sum[k] + p.sum[k]));
-        sum.map(|c| c * scale)
+        let count = f64::from(self.width) * f64::from(self.height);
+        let sum = self.pixels().fold([0.0; 3], |sum, (p, n)| {
+            [0, 1, 2].map(|k| sum[k] + p.sum[k] / n.max(1.0))
+        });
+        sum.map(|c| c / count)
     }
 
     /// The estimated error; `None` below two samples a pixel.
     pub fn error(&self) -> Option<ErrorEstimate> {
-        if self.samples < 2 || self.pixels.is_empty() {
+        if self.samples() < 2 {
             return None;
         }
-        let n = self.samples as f64;
-        let count = self.pixels.len() as f64;
-        let scene = self.pixels.iter().map(|p| p.mean).sum::<f64>() / count;
+        let count = f64::from(self.width) * f64::from(self.height);
+        let scene = self.pixels().map(|(p, _)| p.mean).sum::<f64>() / count;
         let floor = 1e-2 * scene * scene;
-        let relative = |p: &Pixel| {
+        let relative = |(p, n): (&Pixel, f64)| {
             let variance = p.deviations / (n - 1.0) / n;
             let denominator = p.mean * p.mean + floor;
             if denominator > 0.0 { variance / denominator } else { 0.0 }
         };
-        let relmse = self.pixels.iter().map(relative).sum::<f64>() / count;
-        let spread = self.pixels.iter().map(|p| (relative(p) - relmse).powi(2)).sum::<f64>();
+        let relmse = self.pixels().map(relative).sum::<f64>() / count;
+        let spread = self.pixels().map(|p| (relative(p) - relmse).powi(2)).sum::<f64>();
         let ci95 = 1.96 * (spread / (count - 1.0).max(1.0) / count).sqrt();
         Some(ErrorEstimate { relmse, ci95 })
     }
 }
 
-impl Pixel {
-    fn add(&mut self, rgb: [f64; 3], n: f64) {
-        for (sum, c) in self.sum.iter_mut().zip(rgb) {
-            *sum += c;
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiling_does_not_show() {
+        let sample = |x: u32, y: u32, s: u32| ((x * 7 + y * 13 + s * 29) % 31) as f32 * 0.37;
+        let render = |tile_size: u32| {
+            let mut film = Film::new(37, 21, tile_size);
+            for tile in film.tiles_mut() {
+                let r = tile.rect();
+                for s in 0..5 {
+                    let pixel = |i: u32| [sample(r.x + i % r.width, r.y + i / r.width, s); 3];
+                    tile.add(&(0..r.area() as u32).flat_map(pixel).collect::<Vec<_>>());
+                }
+            }
+            film
+        };
+        let (a, b) = (render(8), render(64));
+        assert_eq!(a.image(), b.image());
+        assert_eq!((a.mean(), a.error(), a.samples()), (b.mean(), b.error(), 5));
+    }
+
+    #[test]
+    fn saturates_not_and_cancels_not() {
+        // S-01 and S-02: mean 1000 ± 0.5, and more samples than f32 can count.
+        let mut film = Film::new(1, 1, 1);
+        let samples = 1 << 16;
+        for _ in 0..512 {
+            let tile: Vec<f32> =
+                (0..samples).flat_map(|s| [1000.0 + if s % 2 == 0 { 0.5 } else { -0.5 }; 3]).collect();
+            film.tiles_mut()[0].add(&tile);
         }
-        let luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-        let delta = luminance - self.mean;
-        self.mean += delta / n;
-        self.deviations += delta * (luminance - self.mean);
+        let n = 512.0 * f64::from(samples);
+        assert_eq!(film.samples(), n as u64);
+        assert!((film.mean()[0] - 1000.0).abs() < 1e-6);
+        let expected = 0.25 / n / (1000.0 * 1000.0 * 1.01);
+        assert!((film.error().unwrap().relmse / expected - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn invalid_samples_are_counted_and_dropped() {
+        let mut film = Film::new(1, 1, 1);
+        film.tiles_mut()[0].add(&[f32::NAN, 0.0, 0.0, 2.0, 2.0, 2.0, 1.0, f32::INFINITY, 0.0]);
+        assert_eq!(film.invalid_samples(), 2);
+        assert!((film.image()[0][0] - 2.0 / 3.0).abs() < 1e-7);
     }
 }

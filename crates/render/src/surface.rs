@@ -18,8 +18,6 @@ pub struct Ray<D: Domain> {
 /// What traversal found.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<D: Domain> {
-    /// Distance, in units of the ray's direction.
-    pub t: D::F,
     /// Barycentric weight of corner 1.
     pub u: D::F,
     /// Barycentric weight of corner 2.
@@ -211,7 +209,7 @@ impl<D: Domain> Surface<D> {
         let corners = Corners::new(d, prim, u, v);
         let axes = [0, 1, 2].map(|k| corners.component(d, Buffer::Positions, 3, k));
         let (point, _, _) = position(d, &corners.weights, axes);
-        Self::new(d, attributes, &Hit { t: d.lit(1.0), u, v, prim }, point - from)
+        Self::new(d, attributes, &Hit { u, v, prim }, point - from)
     }
 
     /// Replaces the shading normal, given in the shading frame (a normal map's value).

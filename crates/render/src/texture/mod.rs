@@ -119,7 +119,7 @@ impl<D: Domain> ScalarSource<D> for Bound<D::F> {
 }
 
 /// An input of a boxed program, by number: already evaluated into [`Surface::inputs`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Input(pub usize);
 
 impl<D: Domain> ColorSource<D> for Input {

@@ -1,0 +1,123 @@
+//! Scheduling: passes of samples over all tiles, tiles spread over threads.
+
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use residual_render::film::Film;
+
+use crate::tile::{Counters, SceneView, TileJob, TileRenderer};
+
+/// Pixels along the side of a tile. A wave of 4,096 paths with all its columns fits the second-level cache.
+const TILE_SIZE: u32 = 64;
+/// Passes grow until one takes about this long, so that progress is shown and time limits are kept.
+const PASS_TIME: Duration = Duration::from_millis(250);
+/// Most samples in one pass.
+const MAX_PASS: u32 = 16;
+
+/// What is to be rendered, and when to stop.
+#[derive(Clone, Debug)]
+pub struct RenderOptions {
+    /// Width and height of the image in pixels.
+    pub size: [u32; 2],
+    /// Samples a pixel; `None` leaves the end to `time`.
+    pub samples: Option<u32>,
+    /// Stop after the pass in which this much time has gone by.
+    pub time: Option<Duration>,
+    /// Most vertices a path may have; 1 is emission seen directly, 2 adds direct light.
+    pub max_depth: u32,
+    /// Seed of the random numbers.
+    pub seed: u32,
+    /// Threads; 0 is one for each processor.
+    pub threads: usize,
+}
+
+/// How far a render has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Samples a pixel so far.
+    pub samples: u32,
+    /// Since the start of rendering.
+    pub elapsed: Duration,
+}
+
+/// What was done.
+#[derive(Clone, Debug)]
+pub struct RenderReport {
+    /// Rays and stage times, over all threads.
+    pub counters: Counters,
+    /// Time on the clock.
+    pub elapsed: Duration,
+    /// Threads used.
+    pub threads: usize,
+}
+
+/// Threads that render.
+pub struct CpuDevice {
+    pool: rayon::ThreadPool,
+}
+
+impl CpuDevice {
+    /// A device with this many threads; 0 is one for each processor.
+    ///
+    /// # Errors
+    /// If the system gives no threads.
+    pub fn new(threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
+        Ok(Self { pool: rayon::ThreadPoolBuilder::new().num_threads(threads).build()? })
+    }
+
+    /// Renders until the options say stop. Between passes `renderer` is asked anew which renderer to use, so that a
+    /// compiled one can take over from the interpreter; all give the same bits.
+    pub fn render<'r>(
+        &self,
+        mut renderer: impl FnMut() -> &'r dyn TileRenderer,
+        scene: &SceneView<'_>,
+        options: &RenderOptions,
+        mut progress: impl FnMut(Progress),
+    ) -> (Film, RenderReport) {
+        let [width, height] = options.size;
+        let mut film = Film::new(width, height, TILE_SIZE);
+        let start = Instant::now();
+        let counters = Mutex::new(Counters::default());
+        let mut done = 0;
+        let mut pass = 1;
+        loop {
+            let left = options.samples.map_or(u32::MAX, |samples| samples.saturating_sub(done));
+            let late = options.time.is_some_and(|time| start.elapsed() >= time);
+            if left == 0 || (late && done > 0) {
+                break;
+            }
+            let count = pass.min(left);
+            let renderer = renderer();
+            let pass_start = Instant::now();
+            self.pool.install(|| {
+                film.tiles_mut().par_iter_mut().for_each(|tile| {
+                    let rect = tile.rect();
+                    let job = TileJob {
+                        tile: [rect.x, rect.y, rect.width, rect.height],
+                        image: options.size,
+                        samples: [done, count],
+                        max_depth: options.max_depth,
+                        roulette_from: 5,
+                        seed: options.seed,
+                    };
+                    let mut radiance = vec![0.0; rect.area() * 3 * count as usize];
+                    let did = renderer.render_tile(scene, &job, &mut radiance);
+                    tile.add(&radiance);
+                    *counters.lock().expect("no tile panicked") += did;
+                });
+            });
+            done += count;
+            progress(Progress { samples: done, elapsed: start.elapsed() });
+            if pass_start.elapsed() < PASS_TIME {
+                pass = (pass * 2).min(MAX_PASS);
+            }
+        }
+        let report = RenderReport {
+            counters: counters.into_inner().expect("no tile panicked"),
+            elapsed: start.elapsed(),
+            threads: self.pool.current_num_threads(),
+        };
+        (film, report)
+    }
+}

@@ -1,0 +1,41 @@
+//! The interpreted tier: a structure's boxed nodes, built for whatever instruction set and lane count is at hand.
+
+use residual_render::program::{Interpreted, Structure};
+
+use crate::lanes::LaneCount;
+use crate::render_lanes;
+use crate::tile::{Counters, SceneView, TileJob, TileRenderer};
+
+/// Renders a structure without compiling it.
+#[derive(Clone, Debug)]
+pub struct Interpreter {
+    structure: Structure,
+    lanes: LaneCount,
+}
+
+impl Interpreter {
+    /// An interpreter of this structure.
+    pub fn new(structure: Structure, lanes: LaneCount) -> Self {
+        Self { structure, lanes }
+    }
+}
+
+impl TileRenderer for Interpreter {
+    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, radiance: &mut [f32]) -> Counters {
+        let scene_from = &self.structure;
+        match self.lanes {
+            LaneCount::One => {
+                render_lanes!(One, scene, job, radiance, |b| Interpreted::new(scene_from, b))
+            }
+            LaneCount::Four => {
+                render_lanes!(Four, scene, job, radiance, |b| Interpreted::new(scene_from, b))
+            }
+            LaneCount::Eight => {
+                render_lanes!(Eight, scene, job, radiance, |b| Interpreted::new(scene_from, b))
+            }
+            LaneCount::Sixteen => {
+                render_lanes!(Sixteen, scene, job, radiance, |b| Interpreted::new(scene_from, b))
+            }
+        }
+    }
+}
