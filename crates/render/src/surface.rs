@@ -41,6 +41,23 @@ pub struct Attributes {
     pub colors: bool,
 }
 
+impl Attributes {
+    /// None at all.
+    pub const NONE: Self =
+        Self { normals: false, tangents: false, uv0: false, uv1: false, colors: false };
+
+    /// What either reads.
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            normals: self.normals | other.normals,
+            tangents: self.tangents | other.tangents,
+            uv0: self.uv0 | other.uv0,
+            uv1: self.uv1 | other.uv1,
+            colors: self.colors | other.colors,
+        }
+    }
+}
+
 /// The numbers of inputs that boxed programs keep per surface point.
 pub const MAX_INPUTS: usize = 32;
 

@@ -3,5 +3,6 @@
 pub mod desc;
 mod desc_validate;
 pub mod import;
+pub mod plan;
 
 pub use desc_validate::Violation;
