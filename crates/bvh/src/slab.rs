@@ -99,3 +99,6 @@ impl<S: Lanes<N>, const N: usize> SlabRay<S, N> {
         (entry, exit)
     }
 }
+
+#[cfg(test)]
+mod tests;
