@@ -87,7 +87,8 @@ fn intersect(ray: &Ray, vertices: &[[f32; 3]; 3], one_side: bool) -> Option<[f32
     }
     let [wa, wb, wc] = products.map(|(p, q)| p - q);
     let determinant = wa + wb + wc;
-    let t = (wa * (a[2] * sz) + wb * (b[2] * sz) + wc * (c[2] * sz)) / determinant;
+    let [w, u, v] = [wa, wb, wc].map(|weight| weight / determinant);
+    let t = w * (a[2] * sz) + u * (b[2] * sz) + v * (c[2] * sz);
     if determinant == 0.0 || !determinant.is_finite() || t.is_nan() {
         return None;
     }
@@ -100,8 +101,8 @@ fn intersect(ray: &Ray, vertices: &[[f32; 3]; 3], one_side: bool) -> Option<[f32
     let extent = (0..3)
         .map(|axis| axis_range(axis).1 - axis_range(axis).0)
         .fold(0.0, f32::max);
-    let (mut entry, mut exit) = (if ray.tmin > 0.0 { ray.tmin } else { 0.0 }, f32::MAX);
-    let tmin = entry;
+    let (mut entry, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
+    let tmin = if ray.tmin > 0.0 { ray.tmin } else { 0.0 };
     for axis in 0..3 {
         let (lo, hi) = axis_range(axis);
         let pad = |x: f32| extent * 2f32.powi(-22) + x.abs() * f32::EPSILON;
@@ -118,5 +119,5 @@ fn intersect(ray: &Ray, vertices: &[[f32; 3]; 3], one_side: bool) -> Option<[f32
     }
     let t = if t > entry { t } else { entry };
     let t = if t < exit { t } else { exit };
-    (entry <= exit && tmin <= t && t <= ray.tmax).then(|| [t, wb / determinant, wc / determinant])
+    (entry <= exit && tmin <= t && t <= ray.tmax && t <= f32::MAX).then_some([t, u, v])
 }

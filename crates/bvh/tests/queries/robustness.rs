@@ -190,7 +190,7 @@ fn intervals_are_closed() {
         let mut ray = Ray {
             org: [x, y, -3.0],
             tmin: 0.0,
-            dir: random.in_cube(0.1),
+            dir: random.in_cube(0.05),
             tmax: f32::INFINITY,
         };
         ray.dir[2] = 1.0;
