@@ -194,8 +194,10 @@ impl<const N: usize> Stack<N> {
             touched &= touched - 1;
             (slot, touched == 0)
         };
-        // SAFETY of this and the like below: slots are positions of bits of `touched`, below N.
-        let child = |slot: usize| unsafe { *children.get_unchecked(slot) };
+        let child = |slot: usize| {
+            // SAFETY: slots are positions of bits of `touched`, below N by this function's contract.
+            unsafe { *children.get_unchecked(slot) }
+        };
 
         let (slot, last) = take();
         if last {
