@@ -72,6 +72,9 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
     if let Some(environment) = &options.environment {
         environment::append(&mut scene, environment, &mut warnings)?;
     }
+    if scene.instances.is_empty() {
+        warnings.push("scene", "has nothing to render");
+    }
     scene.warnings = warnings.0;
     if let Err(violation) = scene.validate() {
         // Values the checks above did not foresee; better refused here than rendered as NaN.
