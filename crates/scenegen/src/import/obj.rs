@@ -6,7 +6,6 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DAffine3, Vec2, Vec3};
-use tobj::LoadError;
 
 use super::budget::Budget;
 use super::error::{Fault, ImportError, MAKE_SMALLER, Warnings};
@@ -15,15 +14,13 @@ use super::guard::without_panic;
 use super::instances::place_mesh;
 use super::mtl::{self, MtlMaterial};
 use super::obj_materials::ObjMaterials;
-use super::obj_source::{self, CountingLines, ObjSource};
+use super::obj_source::{self, CountingLines, ObjSource, REPAIR_LINE};
 use super::texture_uses;
 use super::triangles::{self, RawMesh};
 use crate::desc::{MeshDesc, SceneDesc};
 
 /// tobj needs several times a file's size.
 const MAX_OBJ_BYTES: usize = 256 << 20;
-
-const ADVICE: &str = "repair that line or export the file again";
 
 /// Reads an `.obj` file and its material libraries.
 pub(super) fn import(file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, ImportError> {
@@ -38,7 +35,7 @@ pub(super) fn import(file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, 
         );
         return Err(fault.advise(MAKE_SMALLER).in_file(file));
     }
-    let source = obj_source::clean(&bytes, warnings);
+    let source = obj_source::clean(&bytes, warnings).map_err(|fault| fault.in_file(file))?;
     drop(bytes);
     let folder = file.parent().unwrap_or(Path::new(""));
     let (models, materials) =
@@ -85,16 +82,10 @@ fn load(
     };
     let outcome = without_panic(|| {
         let mut reader = CountingLines::new(&source.text, &line);
-        tobj::load_obj_buf(&mut reader, &options, loader).map_err(|error| match error {
-            LoadError::FaceVertexOutOfBounds
-            | LoadError::FaceTexCoordOutOfBounds
-            | LoadError::FaceNormalOutOfBounds
-            | LoadError::FaceColorOutOfBounds => format!("{error} in a face before this line"),
-            _ => error.to_string(),
-        })
+        tobj::load_obj_buf(&mut reader, &options, loader).map_err(|error| error.to_string())
     });
     let place = format!("line {}", line.load(Ordering::Relaxed));
-    let (models, _) = outcome.map_err(|problem| Fault::new(place, problem).advise(ADVICE))?;
+    let (models, _) = outcome.map_err(|problem| Fault::new(place, problem).advise(REPAIR_LINE))?;
     Ok((models, library.into_inner().0))
 }
 
