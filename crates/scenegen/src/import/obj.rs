@@ -1,7 +1,7 @@
 //! OBJ files, with tobj for the geometry.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -22,6 +22,9 @@ use crate::desc::{MeshDesc, SceneDesc};
 /// tobj needs several times a file's size.
 const MAX_OBJ_BYTES: usize = 256 << 20;
 
+/// More libraries than this are not read.
+const MAX_LIBRARIES: usize = 1000;
+
 /// Reads an `.obj` file and its material libraries.
 pub(super) fn import(file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, ImportError> {
     let bytes = files::read(file).map_err(|message| ImportError::Io {
@@ -40,13 +43,17 @@ pub(super) fn import(file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, 
     let folder = file.parent().unwrap_or(Path::new(""));
     let (models, materials) =
         load(&source, folder, warnings).map_err(|fault| fault.in_file(file))?;
+    let mut known: HashSet<&str> = materials
+        .iter()
+        .map(|material| material.name.as_str())
+        .collect();
     for (line, name) in &source.used_materials {
-        if !materials.iter().any(|material| material.name == *name) {
-            let message = format!("material \"{name}\" is in no library; grey is used");
-            // Once for each name: files repeat it thousands of times.
-            if !warnings.0.iter().any(|warning| warning.message == message) {
-                warnings.push(format!("line {line}"), message);
-            }
+        // Once for each name: files repeat it thousands of times.
+        if known.insert(name) {
+            warnings.push(
+                format!("line {line}"),
+                format!("material \"{name}\" is in no library; grey is used"),
+            );
         }
     }
     build(models, &materials, folder, warnings).map_err(|fault| fault.in_file(file))
@@ -58,16 +65,18 @@ fn load(
     warnings: &mut Warnings,
 ) -> Result<(Vec<tobj::Model>, Vec<MtlMaterial>), Fault> {
     let line = AtomicUsize::new(0);
-    let library = RefCell::new((Vec::new(), warnings));
+    let library = RefCell::new((Vec::new(), HashSet::new(), warnings));
     let options = tobj::LoadOptions {
-        single_index: true,
-        triangulate: true,
         ignore_points: true,
         ignore_lines: true,
-        ..tobj::LoadOptions::default()
+        ..tobj::GPU_LOAD_OPTIONS
     };
     let loader = |name: &Path| {
-        let (materials, warnings) = &mut *library.borrow_mut();
+        let (materials, seen, warnings) = &mut *library.borrow_mut();
+        // Files repeat the line for every object.
+        if seen.len() >= MAX_LIBRARIES || !seen.insert(name.to_owned()) {
+            return Ok((Vec::new(), HashMap::new()));
+        }
         let place = format!("line {}", line.load(Ordering::Relaxed));
         let loaded = mtl::load(&name.to_string_lossy(), folder, &place, warnings);
         let ids: HashMap<String, usize> = loaded
