@@ -313,6 +313,19 @@ fn corners_with_and_without_normals_fall_back_to_flat_ones() {
 }
 
 #[test]
+fn references_to_an_attribute_that_is_nowhere_are_ignored() {
+    let scene =
+        try_import(&[("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2/2/1 3/3/1\n")]).unwrap();
+    assert_eq!(scene.meshes[0].normals, [Vec3::Z; 3]);
+    assert_eq!(scene.meshes[0].uvs, [None, None]);
+    assert!(
+        warns(&scene, "line 4", "vn, of which there are none"),
+        "{:?}",
+        scene.warnings
+    );
+}
+
+#[test]
 fn malformed_lines_are_errors_with_their_line() {
     for (text, expected) in [
         ("v 0 0 0\nv 1 x 0\n", "line 2: position parse error"),

@@ -88,7 +88,7 @@ pub(super) fn clean(bytes: &[u8], warnings: &mut Warnings) -> Result<ObjSource, 
             format!("{short_faces} faces have fewer than three corners and are left out"),
         );
     }
-    references.check()?;
+    references.check(warnings)?;
     Ok(source)
 }
 
@@ -165,10 +165,17 @@ impl References {
         Ok(())
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    fn check(&self, warnings: &mut Warnings) -> Result<(), Fault> {
         for kind in 0..3 {
             let (index, line) = self.largest[kind];
-            if index > self.counts[kind] {
+            if kind > 0 && index > 0 && self.counts[kind] == 0 {
+                // Some exporters leave out the attribute and keep the indices.
+                let message = format!(
+                    "faces refer to {}, of which there are none",
+                    REFERENCED[kind]
+                );
+                warnings.push(line_place(line), message);
+            } else if index > self.counts[kind] {
                 return Err(out_of_range(line, index as i64, kind, self.counts[kind]));
             }
         }
