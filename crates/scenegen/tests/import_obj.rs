@@ -341,7 +341,7 @@ fn malformed_lines_are_errors_with_their_line() {
             "line 2: a face refers to vt",
         ),
         (
-            "v 0 0 0\nf 1//9223372036854775807 1 1\n",
+            "v 0 0 0\nf 1//9223372036854775807 1 1\nvn 0 0 1\n",
             "line 2: a face refers to vn",
         ),
     ] {

@@ -166,8 +166,7 @@ impl References {
     }
 
     fn check(&self, warnings: &mut Warnings) -> Result<(), Fault> {
-        for kind in 0..3 {
-            let (index, line) = self.largest[kind];
+        for (kind, &(index, line)) in self.largest.iter().enumerate() {
             if kind > 0 && index > 0 && self.counts[kind] == 0 {
                 // Some exporters leave out the attribute and keep the indices.
                 let message = format!(
