@@ -16,7 +16,7 @@ use residual_scenegen::plan::Plan;
 
 use crate::args::{RenderArgs, StatsArg, TierArg};
 use crate::output::{self, Metadata};
-use crate::stats::{Stages, Statistics};
+use crate::stats::{Stages, Statistics, cpu_seconds};
 use crate::{compile, scene};
 
 const DEFAULT_SAMPLES: u32 = 64;
@@ -43,6 +43,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let samples_done = AtomicU32::new(0);
     let mut bvh_time = Duration::ZERO;
     let mut done = None;
+    let mut render_cpu = None;
     std::thread::scope(|scope| {
         // Compilation runs beside the building of the hierarchy and, with `auto`, beside rendering.
         let compilation = (args.tier != TierArg::Interpreted)
@@ -77,7 +78,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             }
             bar.set_message(format!("{} spp", progress.samples));
         };
+        let cpu_before = cpu_seconds();
         done = Some(device.render(choose, &view, &options, show));
+        render_cpu = cpu_before.zip(cpu_seconds()).map(|(before, after)| after - before);
         bar.finish_and_clear();
         // The image is ready: it is written before the compiler, if it still runs, is waited for.
         let (film, report) = done.as_ref().expect("just rendered");
@@ -111,6 +114,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         tier,
         lanes: lanes.count(),
         compiled_from: (from != u32::MAX).then_some(from),
+        render_cpu,
     };
     if !args.quiet {
         summary(&film, &report.elapsed, &outputs, args, statistics.compiled_from);

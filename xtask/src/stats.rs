@@ -26,22 +26,24 @@ pub(crate) struct Statistics<'a> {
     pub(crate) tier: &'static str,
     pub(crate) lanes: u32,
     pub(crate) compiled_from: Option<u32>,
+    /// CPU seconds of the rendering alone, where the system tells.
+    pub(crate) render_cpu: Option<f64>,
 }
 
-/// A process's CPU seconds and greatest resident memory, where the system tells.
-fn process_usage() -> (Option<f64>, Option<f64>) {
-    let stat = std::fs::read_to_string("/proc/self/stat").ok();
+/// The CPU seconds of this process so far, where the system tells.
+pub(crate) fn cpu_seconds() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     // After the command's closing parenthesis: field 3 is the state; utime and stime are fields 14 and 15, in 1/100 s.
-    let ticks = stat.as_deref().and_then(|text| {
-        let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
-        Some(fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?)
-    });
-    let status = std::fs::read_to_string("/proc/self/status").ok();
-    let peak = status.as_deref().and_then(|text| {
-        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-        line.trim().strip_suffix(" kB")?.trim().parse::<f64>().ok()
-    });
-    (ticks.map(|ticks| ticks / 100.0), peak.map(|kib| kib / 1024.0))
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let field = |number: usize| fields.get(number - 3)?.parse::<f64>().ok();
+    Some((field(14)? + field(15)?) / 100.0)
+}
+
+/// The greatest resident memory of this process in MiB, where the system tells.
+fn peak_memory() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().strip_suffix(" kB")?.trim().parse::<f64>().ok()? / 1024.0)
 }
 
 impl Statistics<'_> {
@@ -53,10 +55,7 @@ impl Statistics<'_> {
     pub(crate) fn json(&self) -> Value {
         let c = &self.report.counters;
         let render = self.report.elapsed.as_secs_f64();
-        // Thread time inside tiles: what the render itself cost, without import and compilation.
-        let busy = c.emit + c.trace_camera + c.trace_bounce + c.trace_shadow + c.sort + c.shade;
         let rays = c.camera_rays + c.bounce_rays + c.shadow_rays;
-        let (cpu_seconds, peak) = process_usage();
         let effects: Vec<String> = Effects::of(self.plan).iter().map(|e| e.to_string()).collect();
         let error = self.film.error();
         json!({
@@ -86,8 +85,8 @@ impl Statistics<'_> {
             },
             "compiled_from_spp": self.compiled_from,
             "msamples_per_s": self.samples() / render / 1e6,
-            "msamples_per_cpu_s": self.samples() / busy / 1e6,
-            "cpu_seconds": cpu_seconds,
+            "msamples_per_cpu_s": self.render_cpu.map(|cpu| self.samples() / cpu / 1e6),
+            "cpu_seconds": cpu_seconds(),
             "rays": { "camera": c.camera_rays, "bounce": c.bounce_rays, "shadow": c.shadow_rays },
             "mrays_per_s": rays as f64 / render / 1e6,
             "programs": self.plan.structure.programs.len(),
@@ -95,7 +94,7 @@ impl Statistics<'_> {
             "mean": self.film.mean(),
             "error": error.map(|e| json!({ "relmse": e.relmse, "ci95": e.ci95 })),
             "invalid_samples": self.film.invalid_samples(),
-            "peak_rss_mib": peak,
+            "peak_rss_mib": peak_memory(),
         })
     }
 

@@ -10,6 +10,7 @@ use residual_render::program::{
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 
+use super::closed::is_closed;
 use super::geometry::is_smooth;
 use super::images::Images;
 use super::sources::Sources;
@@ -31,7 +32,9 @@ pub(super) fn plan_materials(
         let Some(available) = available else { continue };
         let desc = &scene.materials[number];
         let sources = Sources::new(scene, options.binding, available, images);
-        let mut builder = Builder { sources, inputs: Vec::new(), warnings, name: &desc.name };
+        let encloses = encloses_a_body(scene, number);
+        let mut builder =
+            Builder { sources, inputs: Vec::new(), warnings, name: &desc.name, encloses };
         let (program, invisible) = builder.program(desc, available);
         let params = builder.sources.into_params();
         let transmits = bsdf_transmits(&program.bsdf);
@@ -77,6 +80,18 @@ fn available_attributes(scene: &SceneDesc) -> Vec<Option<Attributes>> {
     available
 }
 
+/// Whether a transmitting material's surfaces are all closed. Its rays are then refracted even where the file has no
+/// KHR_materials_volume: the specification's thin walls are meant for sheets, and other offline renderers (Cycles,
+/// Mitsuba) refract as well.
+fn encloses_a_body(scene: &SceneDesc, material: usize) -> bool {
+    let transmits = |surface: &SurfaceDesc| match surface {
+        SurfaceDesc::MetallicRoughness(surface) => surface.transmission.factor > 0.0,
+        SurfaceDesc::Phong(_) | SurfaceDesc::Dielectric { .. } => false,
+    };
+    transmits(&scene.materials[material].surface)
+        && scene.meshes.iter().filter(|mesh| mesh.material == material).all(is_closed)
+}
+
 fn bsdf_transmits(bsdf: &BsdfNode) -> bool {
     match bsdf {
         BsdfNode::Dielectric { .. } => true,
@@ -97,6 +112,8 @@ struct Builder<'a> {
     inputs: Vec<InputNode>,
     warnings: &'a mut Vec<Warning>,
     name: &'a str,
+    /// The material's surfaces are closed.
+    encloses: bool,
 }
 
 impl Builder<'_> {
@@ -204,7 +221,7 @@ impl Builder<'_> {
                     .to_owned(),
             });
         }
-        let clear = self.dielectric(base.clone(), surface.ior, surface.solid);
+        let clear = self.dielectric(base.clone(), surface.ior, surface.solid || self.encloses);
         if transmission == ScalarNode::Const(1.0) {
             return clear;
         }

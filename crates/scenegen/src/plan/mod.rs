@@ -6,6 +6,7 @@
 
 mod alias;
 mod camera;
+mod closed;
 mod geometry;
 mod images;
 mod lights;
