@@ -7,7 +7,6 @@ mod domain;
 mod elementary;
 mod lights;
 mod microfacet;
-mod path;
 mod sampler;
 mod spawn;
 mod support;
