@@ -5,6 +5,8 @@
 //! Construction", TVCG 24(3), 2018, and "Parallel Reinsertion for Bounding Volume Hierarchy
 //! Optimization", Eurographics 2018.
 
+use std::ops::Range;
+
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -40,24 +42,44 @@ impl BinaryTree {
             BuildQuality::Best => (PlocSearchDistance::Medium, 1, 1.0, SortPrecision::U128),
         };
         let boxes = unit_boxes(references);
-        let indices = (0..boxes.len() as u32).collect();
-        let mut bvh2 = PlocBuilder::new().build(search, &boxes, indices, precision, threshold);
+        let (order, groups) = group_equal(&boxes);
+        let unique: Vec<Aabb> = groups
+            .iter()
+            .map(|group| boxes[order[group.start] as usize])
+            .collect();
+        let indices = (0..unique.len() as u32).collect();
+        let mut bvh2 = PlocBuilder::new().build(search, &unique, indices, precision, threshold);
         reinsert(&mut bvh2, reinsertion);
 
         // Preorder. Reinsertion leaves children before their parents.
         let mut nodes = vec![BinaryNode::Leaf(0)];
-        let mut pending = vec![(0u32, 0usize)];
+        let mut pending = vec![(Source::Node(0), 0usize)];
         while let Some((source, target)) = pending.pop() {
-            let node = &bvh2.nodes[source as usize];
-            nodes[target] = if node.is_leaf() {
-                BinaryNode::Leaf(bvh2.primitive_indices[node.first_index as usize])
-            } else {
-                let left = nodes.len();
-                nodes.extend([BinaryNode::Leaf(0); 2]);
-                pending.push((node.first_index + 1, left + 1));
-                pending.push((node.first_index, left));
-                BinaryNode::Inner(left as u32, left as u32 + 1)
+            let source = match source {
+                Source::Node(index) if bvh2.nodes[index as usize].is_leaf() => {
+                    let first = bvh2.nodes[index as usize].first_index as usize;
+                    Source::Group(groups[bvh2.primitive_indices[first] as usize].clone())
+                }
+                source => source,
             };
+            let (left, right) = match source {
+                Source::Group(Range { start, end }) if end - start == 1 => {
+                    nodes[target] = BinaryNode::Leaf(order[start]);
+                    continue;
+                }
+                Source::Group(Range { start, end }) => {
+                    let middle = start.midpoint(end);
+                    (Source::Group(start..middle), Source::Group(middle..end))
+                }
+                Source::Node(index) => {
+                    let first = bvh2.nodes[index as usize].first_index;
+                    (Source::Node(first), Source::Node(first + 1))
+                }
+            };
+            let first = nodes.len();
+            nodes.extend([BinaryNode::Leaf(0); 2]);
+            nodes[target] = BinaryNode::Inner(first as u32, first as u32 + 1);
+            pending.extend([(right, first + 1), (left, first)]);
         }
         BinaryTree { nodes }
     }
@@ -102,6 +124,37 @@ impl BinaryTree {
         }
         found
     }
+}
+
+/// Where a node of the binary tree comes from.
+enum Source {
+    /// A node of obvhs' tree.
+    Node(u32),
+    /// References with equal boxes, a range of their order.
+    Group(Range<usize>),
+}
+
+/// The boxes' indices, ordered so that equal boxes are neighbours, and the ranges of equals.
+///
+/// obvhs gets one of each: PLOC merges mutual nearest neighbours, and among more equal boxes than
+/// its search distance it finds none and never ends.
+fn group_equal(boxes: &[Aabb]) -> (Vec<u32>, Vec<Range<usize>>) {
+    let key = |index: u32| {
+        let bounds = &boxes[index as usize];
+        (
+            bounds.min.to_array().map(f32::to_bits),
+            bounds.max.to_array().map(f32::to_bits),
+        )
+    };
+    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+    order.sort_unstable_by_key(|&index| (key(index), index));
+    let mut groups = Vec::new();
+    let mut start = 0;
+    for equals in order.chunk_by(|&a, &b| key(a) == key(b)) {
+        groups.push(start..start + equals.len());
+        start += equals.len();
+    }
+    (order, groups)
 }
 
 /// obvhs' default sequence of reinsertions, the ratio of nodes considered shrinking with each.

@@ -11,7 +11,7 @@ use crate::{Bounds, Bvh};
 pub enum BuildQuality {
     /// For previews.
     Fast,
-    /// About five times the time of `Fast`.
+    /// For images that take minutes.
     Medium,
     /// Splits large triangles and optimises thoroughly.
     Best,

@@ -73,18 +73,18 @@ impl<S: Lanes<N>, const N: usize> SlabRay<S, N> {
         (entry, exit)
     }
 
-    /// Where the ray's line enters and leaves the boxes `[lo, hi]`, `[axis]` each, ahead of `tmin`
-    /// and before `tmax`.
+    /// Where the ray's line enters and leaves the boxes `[lo, hi]`, `[axis]` each, with the node
+    /// test's roundings. Not clipped to the ray's interval; behind the origin the slack points the
+    /// wrong way, which nobody asks about.
     #[inline(always)]
     pub(crate) fn box_interval(
         &self,
         simd: S,
         lo: [S::Float; 3],
         hi: [S::Float; 3],
-        tmax: S::Float,
     ) -> (S::Float, S::Float) {
-        let mut entry = self.tmin;
-        let mut exit = tmax;
+        let mut entry = simd.splat(f32::NEG_INFINITY);
+        let mut exit = simd.splat(f32::INFINITY);
         for axis in 0..3 {
             let (near, far) = if self.negative[axis] {
                 (hi[axis], lo[axis])
@@ -99,3 +99,6 @@ impl<S: Lanes<N>, const N: usize> SlabRay<S, N> {
         (entry, exit)
     }
 }
+
+#[cfg(test)]
+mod tests;

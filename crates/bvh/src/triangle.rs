@@ -31,8 +31,8 @@ pub(crate) struct PacketHits<S: Lanes<N>, const N: usize> {
     pub(crate) lanes: u32,
     pub(crate) back: u32,
     t: S::Float,
-    weights: [S::Float; 3],
-    determinant: S::Float,
+    u: S::Float,
+    v: S::Float,
 }
 
 impl<S: Lanes<N>, const N: usize> ShearRay<S, N> {
@@ -105,16 +105,12 @@ impl<S: Lanes<N>, const N: usize> ShearRay<S, N> {
 
         let weights = edges.map(|(p, q)| simd.sub(p, q));
         let determinant = simd.add(simd.add(weights[0], weights[1]), weights[2]);
+        // Normalised before they meet the distances: products of three lengths underflow early.
+        let [w, u, v] = weights.map(|weight| simd.div(weight, determinant));
         let depth = |vertex: [S::Float; 3]| simd.mul(vertex[2], self.shear[2]);
-        let t = simd.div(
-            simd.add(
-                simd.add(
-                    simd.mul(weights[0], depth(a)),
-                    simd.mul(weights[1], depth(b)),
-                ),
-                simd.mul(weights[2], depth(c)),
-            ),
-            determinant,
+        let t = simd.add(
+            simd.add(simd.mul(w, depth(a)), simd.mul(u, depth(b))),
+            simd.mul(v, depth(c)),
         );
         let size = simd.abs(determinant);
         let sound = simd.and(
@@ -127,7 +123,7 @@ impl<S: Lanes<N>, const N: usize> ShearRay<S, N> {
 
         // Inside the triangle's padded box, and t with it: `bounds.rs` says why.
         let (lo, hi) = padded_bounds(simd, packet);
-        let (entry, exit) = slab.box_interval(simd, lo, hi, simd.splat(f32::MAX));
+        let (entry, exit) = slab.box_interval(simd, lo, hi);
         let t = simd.min_number(simd.max_number(t, entry), exit);
         let within = simd.and(
             simd.and(simd.le(entry, exit), simd.le(self.tmin, t)),
@@ -138,8 +134,8 @@ impl<S: Lanes<N>, const N: usize> ShearRay<S, N> {
             lanes,
             back,
             t,
-            weights,
-            determinant,
+            u,
+            v,
         })
     }
 
@@ -147,7 +143,11 @@ impl<S: Lanes<N>, const N: usize> ShearRay<S, N> {
     /// scaled.
     #[inline(always)]
     fn to_ray_space(&self, simd: S, vertex: &[[f32; N]; 3]) -> [S::Float; 3] {
-        let relative = |axis: usize| simd.sub(simd.load(&vertex[self.axes[axis]]), self.org[axis]);
+        let relative = |axis: usize| {
+            // SAFETY: `axes` is a permutation of 0, 1 and 2, and private to this module.
+            let row = unsafe { vertex.get_unchecked(self.axes[axis]) };
+            simd.sub(simd.load(row), self.org[axis])
+        };
         let z = relative(2);
         [
             simd.sub(relative(0), simd.mul(self.shear[0], z)),
@@ -163,8 +163,8 @@ impl<S: Lanes<N>, const N: usize> PacketHits<S, N> {
     pub(crate) fn store(&self, simd: S) -> ([f32; N], [f32; N], [f32; N]) {
         let (mut t, mut u, mut v) = ([0.0; N], [0.0; N], [0.0; N]);
         simd.store(self.t, &mut t);
-        simd.store(simd.div(self.weights[1], self.determinant), &mut u);
-        simd.store(simd.div(self.weights[2], self.determinant), &mut v);
+        simd.store(self.u, &mut u);
+        simd.store(self.v, &mut v);
         (t, u, v)
     }
 }

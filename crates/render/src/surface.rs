@@ -41,6 +41,23 @@ pub struct Attributes {
     pub colors: bool,
 }
 
+impl Attributes {
+    /// None at all.
+    pub const NONE: Self =
+        Self { normals: false, tangents: false, uv0: false, uv1: false, colors: false };
+
+    /// What either reads.
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            normals: self.normals | other.normals,
+            tangents: self.tangents | other.tangents,
+            uv0: self.uv0 | other.uv0,
+            uv1: self.uv1 | other.uv1,
+            colors: self.colors | other.colors,
+        }
+    }
+}
+
 /// The numbers of inputs that boxed programs keep per surface point.
 pub const MAX_INPUTS: usize = 32;
 
@@ -144,13 +161,17 @@ impl<D: Domain> Surface<D> {
         let cos_outward = outward.dot(d, wo);
         let front = d.lt(d.lit(0.0), cos_outward);
         let zero = d.lit(0.0);
-        let flip = |n: Vec3<D::F>| n.map(|c| d.select(front, c, -c));
-        let geometric_normal = flip(outward);
+        let geometric_normal = outward.map(|c| d.select(front, c, -c));
 
-        let shading_normal = if attributes.normals {
-            visible(d, flip(corners.interpolate3(d, Buffer::Normals, 3).normalize_any(d)), wo)
+        // Which side a stored normal is on is the file's affair, and files err: it is turned to the side of the
+        // geometric normal, which follows the winding alone.
+        let (shading_normal, turned) = if attributes.normals {
+            let stored = corners.interpolate3(d, Buffer::Normals, 3).normalize_any(d);
+            let turned = d.lt(stored.dot(d, geometric_normal), zero);
+            let normal = stored.map(|c| d.select(turned, -c, c));
+            (visible(d, normal, wo), turned)
         } else {
-            geometric_normal
+            (geometric_normal, !front)
         };
         let mut frame = Frame::around(d, shading_normal);
         if attributes.tangents {
@@ -161,7 +182,7 @@ impl<D: Domain> Surface<D> {
             let length = tangent.length(d);
             let usable = d.lt(d.lit(1e-6), length);
             let tangent = tangent.scale(d.lit(1.0) / d.max(length, d.lit(1e-6)));
-            let sign = d.select(front, sign, -sign);
+            let sign = d.select(turned, -sign, sign);
             let bitangent = shading_normal.cross(tangent).scale(sign);
             let pick = |a: Vec3<D::F>, b: Vec3<D::F>| {
                 vec3(d.select(usable, a.x, b.x), d.select(usable, a.y, b.y), d.select(usable, a.z, b.z))
@@ -243,7 +264,10 @@ fn visible<D: Domain>(d: D, normal: Vec3<D::F>, wo: Vec3<D::F>) -> Vec3<D::F> {
 }
 
 /// `point`, moved along `normal` to the side of `dir` until it is certainly beyond the surface in spite of
-/// `error`: the smallest move that suffices (Pharr, Jakob, Humphreys 2023, section 6.8.6).
+/// `error` (after Pharr, Jakob, Humphreys 2023, section 6.8.6).
+///
+/// The move is as long as the largest component of the error, not as its part along the normal: that part is 0 on a
+/// plane through the origin, where the intersection of the next ray with it is no more exact than elsewhere.
 #[inline(always)]
 pub fn offset_point<D: Domain>(
     d: D,
@@ -252,7 +276,7 @@ pub fn offset_point<D: Domain>(
     normal: Vec3<D::F>,
     dir: Vec3<D::F>,
 ) -> Vec3<D::F> {
-    let distance = normal.map(|c| d.abs(c)).dot(d, error);
+    let distance = error.max_component(d);
     let offset = normal.scale(d.copysign(distance, dir.dot(d, normal)));
     let ulp = d.lit(f64::from(f32::EPSILON));
     let outward = |p: D::F, o: D::F| {

@@ -2,6 +2,9 @@
 
 pub mod desc;
 mod desc_validate;
+pub mod effects;
+pub mod emit;
 pub mod import;
+pub mod plan;
 
 pub use desc_validate::Violation;

@@ -134,3 +134,54 @@ fn check_counts(path: &Path, scene: &SceneDesc) {
         path.display()
     );
 }
+
+/// The Khronos model brings MikkTSpace tangents; those computed without them must agree.
+#[test]
+fn computed_tangents_agree_with_those_of_the_khronos_test_model() {
+    let Some(scenes) = common::scenes() else {
+        return;
+    };
+    let folder = scenes.join("materials/NormalTangentMirrorTest");
+    let copy = tempfile::tempdir().unwrap();
+    for path in common::files_under(&folder) {
+        std::fs::copy(&path, copy.path().join(path.file_name().unwrap())).unwrap();
+    }
+    let mut json = common::read_json(&folder.join("NormalTangentMirrorTest.gltf")).unwrap();
+    let given = import(
+        &folder.join("NormalTangentMirrorTest.gltf"),
+        &ImportOptions::default(),
+    )
+    .unwrap();
+    json["meshes"][0]["primitives"][0]["attributes"]
+        .as_object_mut()
+        .unwrap()
+        .remove("TANGENT")
+        .unwrap();
+    let path = copy.path().join("without.gltf");
+    std::fs::write(&path, json.to_string()).unwrap();
+    let computed = import(&path, &ImportOptions::default()).unwrap();
+
+    let corners = |scene: &SceneDesc| -> Vec<glam::Vec4> {
+        let mesh = &scene.meshes[0];
+        let tangents = mesh.tangents.as_ref().unwrap();
+        mesh.triangles
+            .iter()
+            .flatten()
+            .map(|&corner| tangents[corner as usize])
+            .collect()
+    };
+    let (given, computed) = (corners(&given), corners(&computed));
+    let agree = given
+        .iter()
+        .zip(&computed)
+        .filter(|(given, computed)| {
+            given.w == computed.w && given.truncate().dot(computed.truncate()) > 0.99
+        })
+        .count();
+    println!("{agree} of {} corners agree", given.len());
+    assert!(
+        agree * 100 >= given.len() * 98,
+        "{agree} of {}",
+        given.len()
+    );
+}

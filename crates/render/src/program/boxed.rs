@@ -9,7 +9,7 @@ use crate::domain::Domain;
 use crate::material::{Material, Shading, decode_normal, front_only};
 use crate::math::{Color, Vec3};
 use crate::surface::{Attributes, MAX_INPUTS, Surface};
-use crate::texture::{ColorSource, Const, Param, Product, ScalarSource, VertexColor};
+use crate::texture::{ColorSource, Const, Gray, Param, Product, ScalarSource, VertexColor};
 
 /// A node behind a vtable: entering it re-establishes the domain's instruction set.
 struct Node<T>(T);
@@ -85,6 +85,7 @@ pub(super) fn color<'a, D: Domain + 'a>(node: &ColorNode) -> BoxedColor<'a, D> {
         ColorNode::Param(offset) => Box::new(Node(Param(*offset))),
         ColorNode::VertexColor => Box::new(Node(VertexColor)),
         ColorNode::Image(image) => Box::new(Node(*image)),
+        ColorNode::Gray(node) => Box::new(Node(Gray(scalar::<D>(node)))),
         ColorNode::Product(a, b) => Box::new(Node(Product(color::<D>(a), color::<D>(b)))),
     }
 }

@@ -28,6 +28,8 @@ pub enum ColorNode {
     VertexColor,
     /// An image.
     Image(ImageNode),
+    /// A number as a grey.
+    Gray(Box<ScalarNode>),
     /// A product.
     Product(Box<ColorNode>, Box<ColorNode>),
 }

@@ -100,6 +100,17 @@ impl<D: Domain, A: ScalarSource<D>, B: ScalarSource<D>> ScalarSource<D> for Prod
     }
 }
 
+/// A number as a grey colour.
+#[derive(Clone, Copy, Debug)]
+pub struct Gray<S>(pub S);
+
+impl<D: Domain, S: ScalarSource<D>> ColorSource<D> for Gray<S> {
+    #[inline(always)]
+    fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F> {
+        Vec3::splat(self.0.scalar(d, surface))
+    }
+}
+
 /// An input that was evaluated already.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound<T>(pub T);

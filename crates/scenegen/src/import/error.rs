@@ -113,20 +113,42 @@ impl Fault {
     }
 }
 
+/// More warnings than this are only counted: a hostile file can cause millions.
+const MAX_WARNINGS: usize = 1000;
+
 /// Warnings as they come up.
 #[derive(Debug, Default)]
-pub(super) struct Warnings(pub(super) Vec<Warning>);
+pub(super) struct Warnings {
+    list: Vec<Warning>,
+    omitted: usize,
+}
 
 impl Warnings {
     /// Records a warning, each once.
     pub(super) fn push(&mut self, place: impl Into<String>, message: impl Into<String>) {
+        if self.list.len() >= MAX_WARNINGS {
+            self.omitted += 1;
+            return;
+        }
         let warning = Warning {
             place: place.into(),
             message: message.into(),
         };
-        if !self.0.contains(&warning) {
-            self.0.push(warning);
+        if !self.list.contains(&warning) {
+            self.list.push(warning);
         }
+    }
+
+    /// All of them, in order.
+    pub(super) fn into_vec(mut self) -> Vec<Warning> {
+        if self.omitted > 0 {
+            let message = format!("{} more warnings are left out", self.omitted);
+            self.list.push(Warning {
+                place: "warnings".into(),
+                message,
+            });
+        }
+        self.list
     }
 }
 

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gltf::json::{self, Index, Root};
+use gltf::json::{self, Animation, Index, Root, Value};
 
 use super::error::{EXPORT_AGAIN, Fault, ImportError, MAKE_SMALLER, Warnings, place};
 use super::files;
@@ -119,12 +119,43 @@ fn parse(json: &[u8]) -> Result<Root, Fault> {
     }
     // The specification forbids a byte order mark and allows readers to skip it.
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
-    Root::from_slice(json).map_err(|error| {
-        Fault::new(
-            format!("line {} column {}", error.line(), error.column()),
-            format!("invalid JSON or glTF: {error}"),
-        )
+    Root::from_slice(json).or_else(|error| {
+        parse_leniently(json).ok_or_else(|| {
+            let place = format!("line {} column {}", error.line(), error.column());
+            Fault::new(place, format!("invalid JSON or glTF: {error}"))
+        })
     })
+}
+
+/// Second try without what the `gltf` crate is stricter about than the specification: a scene needs no
+/// nodes, an animation channel needs no node, and animations are not shown anyway.
+fn parse_leniently(json: &[u8]) -> Option<Root> {
+    let mut value: Value = serde_json::from_slice(json).ok()?;
+    let members = value.as_object_mut()?;
+    let had_animations = members.remove("animations").is_some();
+    for scene in members
+        .get_mut("scenes")
+        .and_then(Value::as_array_mut)
+        .into_iter()
+        .flatten()
+    {
+        scene
+            .as_object_mut()?
+            .entry("nodes")
+            .or_insert_with(|| Value::Array(Vec::new()));
+    }
+    let mut root: Root = serde_json::from_value(value).ok()?;
+    if had_animations {
+        let (channels, samplers) = (Vec::new(), Vec::new());
+        root.animations.push(Animation {
+            extensions: None,
+            extras: None,
+            channels,
+            name: None,
+            samplers,
+        });
+    }
+    Some(root)
 }
 
 fn check_version(root: &Root) -> Result<(), Fault> {

@@ -1,5 +1,6 @@
 //! Which glTF extensions we read, and what is said about the others.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use gltf::json::{Root, Value};
@@ -76,12 +77,13 @@ fn advice(extension: &str) -> &'static str {
 
 /// Warns about what the file uses as a whole and is not imported.
 pub(super) fn warn_about_root(root: &Root, warnings: &mut Warnings) {
+    let used_in_place = used_in_place(root);
     for extension in &root.extensions_used {
         let known = SUPPORTED.contains(&extension.as_str())
             || WITHOUT_EFFECT.contains(&extension.as_str())
             || REPORTED_IN_PLACE.contains(&extension.as_str())
             || MATERIAL_SWITCHES.iter().any(|(name, _)| name == extension);
-        if !known && !is_used_in_place(root, extension) {
+        if !known && !used_in_place.contains(extension.as_str()) {
             warnings.push(
                 "extensionsUsed",
                 format!("{extension} is not supported and ignored"),
@@ -96,20 +98,20 @@ pub(super) fn warn_about_root(root: &Root, warnings: &mut Warnings) {
     }
 }
 
-/// Whether a material or node carries the extension, where the warning then names it.
-fn is_used_in_place(root: &Root, extension: &str) -> bool {
-    let in_material = |material: &gltf::json::Material| {
-        material
-            .extensions
-            .as_ref()
-            .is_some_and(|extensions| extensions.others.contains_key(extension))
-    };
-    let in_node = |node: &gltf::json::Node| {
-        node.extensions
-            .as_ref()
-            .is_some_and(|extensions| extensions.others.contains_key(extension))
-    };
-    root.materials.iter().any(in_material) || root.nodes.iter().any(in_node)
+/// Extensions of materials and nodes, where the warning then names the material or node.
+fn used_in_place(root: &Root) -> HashSet<&str> {
+    let in_materials = root
+        .materials
+        .iter()
+        .filter_map(|material| Some(&material.extensions.as_ref()?.others));
+    let in_nodes = root
+        .nodes
+        .iter()
+        .filter_map(|node| Some(&node.extensions.as_ref()?.others));
+    in_materials
+        .chain(in_nodes)
+        .flat_map(|others| others.keys().map(String::as_str))
+        .collect()
 }
 
 /// Warns about extensions of a material that have an effect and are not rendered.

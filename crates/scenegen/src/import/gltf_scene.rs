@@ -81,7 +81,12 @@ impl Reader<'_> {
             );
         }
         let ids = self.mesh(mesh, &placed.place, warnings)?;
-        for copy in self.copies(placed)? {
+        let copies = self.copies(placed)?;
+        // A mesh of many primitives in many nodes is a product that no file size bounds.
+        let size = (size_of::<InstanceDesc>() + placed.name.len()) as u64;
+        let budget = &mut self.accessors.budget;
+        budget.charge(ids.len() as u64 * copies.len() as u64, size, &placed.place)?;
+        for copy in copies {
             let world = placed.world * copy;
             for &id in &ids {
                 instances.extend(place_mesh(

@@ -235,7 +235,7 @@ impl<'a> Textures<'a> {
 }
 
 /// Translation · rotation · scale; a positive angle turns the coordinates from v towards u, which turns the
-/// picture counter-clockwise.
+/// picture clockwise, as three.js and Bevy read the extension.
 fn uv_matrix(transform: &TextureTransform) -> UvTransform {
     let [offset_u, offset_v] = transform.offset.0;
     let [scale_u, scale_v] = transform.scale.0;

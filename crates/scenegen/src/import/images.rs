@@ -188,12 +188,12 @@ fn decode(bytes: &[u8], encoding: Encoding) -> Result<Decoded, String> {
     let (width, height) = (image.width(), image.height());
     Ok(match image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            let texels = image.into_rgba32f().pixels().map(|pixel| pixel.0).collect();
+            let texels = image.into_rgba32f().into_raw().as_chunks().0.to_vec();
             finite(width, height, texels)
         }
         // 16-bit images are rounded to 8 bits: whether they are sRGB-encoded is known only by their use.
         _ => {
-            let texels = image.into_rgba8().pixels().map(|pixel| pixel.0).collect();
+            let texels = image.into_rgba8().into_raw().as_chunks().0.to_vec();
             Decoded {
                 width,
                 height,

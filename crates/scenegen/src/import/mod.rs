@@ -1,9 +1,9 @@
 //! Importers: scene files of others as a [`SceneDesc`].
 //!
 //! First step of the chain file → description → effects → plan → program. `.gltf` and `.glb` are read by
-//! the `gltf_*` modules, `.obj` with its `.mtl` by the `obj*` and `mtl` ones; both meet in [`triangles`], [`images`]
-//! and [`instances`]. Files are not trusted: every index and size is checked before it is used, decoded
-//! data is charged to a [`budget`], and a malformed file ends in an [`ImportError`], never in a panic.
+//! the `gltf_*` modules, `.obj` with its `.mtl` by the `obj*` and `mtl` ones; both meet in `triangles`, `images`
+//! and `instances`. Files are not trusted: every index and size is checked before it is used, decoded
+//! data is charged to a `budget`, and a malformed file ends in an [`ImportError`], never in a panic.
 //! What a file asks for and we do not render is a warning; under [`ImportOptions::strict`] an error.
 
 use std::path::Path;
@@ -72,7 +72,10 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
     if let Some(environment) = &options.environment {
         environment::append(&mut scene, environment, &mut warnings)?;
     }
-    scene.warnings = warnings.0;
+    if scene.instances.is_empty() {
+        warnings.push("scene", "has nothing to render");
+    }
+    scene.warnings = warnings.into_vec();
     if let Err(violation) = scene.validate() {
         // Values the checks above did not foresee; better refused here than rendered as NaN.
         return Err(gltf_document::malformed(

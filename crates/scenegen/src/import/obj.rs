@@ -1,12 +1,11 @@
 //! OBJ files, with tobj for the geometry.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DAffine3, Vec2, Vec3};
-use tobj::LoadError;
 
 use super::budget::Budget;
 use super::error::{Fault, ImportError, MAKE_SMALLER, Warnings};
@@ -15,7 +14,7 @@ use super::guard::without_panic;
 use super::instances::place_mesh;
 use super::mtl::{self, MtlMaterial};
 use super::obj_materials::ObjMaterials;
-use super::obj_source::{self, CountingLines, ObjSource};
+use super::obj_source::{self, CountingLines, ObjSource, REPAIR_LINE};
 use super::texture_uses;
 use super::triangles::{self, RawMesh};
 use crate::desc::{MeshDesc, SceneDesc};
@@ -23,7 +22,8 @@ use crate::desc::{MeshDesc, SceneDesc};
 /// tobj needs several times a file's size.
 const MAX_OBJ_BYTES: usize = 256 << 20;
 
-const ADVICE: &str = "repair that line or export the file again";
+/// More libraries than this are not read.
+const MAX_LIBRARIES: usize = 1000;
 
 /// Reads an `.obj` file and its material libraries.
 pub(super) fn import(file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, ImportError> {
@@ -38,18 +38,22 @@ pub(super) fn import(file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, 
         );
         return Err(fault.advise(MAKE_SMALLER).in_file(file));
     }
-    let source = obj_source::clean(&bytes, warnings);
+    let source = obj_source::clean(&bytes, warnings).map_err(|fault| fault.in_file(file))?;
     drop(bytes);
     let folder = file.parent().unwrap_or(Path::new(""));
     let (models, materials) =
         load(&source, folder, warnings).map_err(|fault| fault.in_file(file))?;
+    let mut known: HashSet<&str> = materials
+        .iter()
+        .map(|material| material.name.as_str())
+        .collect();
     for (line, name) in &source.used_materials {
-        if !materials.iter().any(|material| material.name == *name) {
-            let message = format!("material \"{name}\" is in no library; grey is used");
-            // Once for each name: files repeat it thousands of times.
-            if !warnings.0.iter().any(|warning| warning.message == message) {
-                warnings.push(format!("line {line}"), message);
-            }
+        // Once for each name: files repeat it thousands of times.
+        if known.insert(name) {
+            warnings.push(
+                format!("line {line}"),
+                format!("material \"{name}\" is in no library; grey is used"),
+            );
         }
     }
     build(models, &materials, folder, warnings).map_err(|fault| fault.in_file(file))
@@ -61,16 +65,18 @@ fn load(
     warnings: &mut Warnings,
 ) -> Result<(Vec<tobj::Model>, Vec<MtlMaterial>), Fault> {
     let line = AtomicUsize::new(0);
-    let library = RefCell::new((Vec::new(), warnings));
+    let library = RefCell::new((Vec::new(), HashSet::new(), warnings));
     let options = tobj::LoadOptions {
-        single_index: true,
-        triangulate: true,
         ignore_points: true,
         ignore_lines: true,
-        ..tobj::LoadOptions::default()
+        ..tobj::GPU_LOAD_OPTIONS
     };
     let loader = |name: &Path| {
-        let (materials, warnings) = &mut *library.borrow_mut();
+        let (materials, seen, warnings) = &mut *library.borrow_mut();
+        // Files repeat the line for every object.
+        if seen.len() >= MAX_LIBRARIES || !seen.insert(name.to_owned()) {
+            return Ok((Vec::new(), HashMap::new()));
+        }
         let place = format!("line {}", line.load(Ordering::Relaxed));
         let loaded = mtl::load(&name.to_string_lossy(), folder, &place, warnings);
         let ids: HashMap<String, usize> = loaded
@@ -85,16 +91,10 @@ fn load(
     };
     let outcome = without_panic(|| {
         let mut reader = CountingLines::new(&source.text, &line);
-        tobj::load_obj_buf(&mut reader, &options, loader).map_err(|error| match error {
-            LoadError::FaceVertexOutOfBounds
-            | LoadError::FaceTexCoordOutOfBounds
-            | LoadError::FaceNormalOutOfBounds
-            | LoadError::FaceColorOutOfBounds => format!("{error} in a face before this line"),
-            _ => error.to_string(),
-        })
+        tobj::load_obj_buf(&mut reader, &options, loader).map_err(|error| error.to_string())
     });
     let place = format!("line {}", line.load(Ordering::Relaxed));
-    let (models, _) = outcome.map_err(|problem| Fault::new(place, problem).advise(ADVICE))?;
+    let (models, _) = outcome.map_err(|problem| Fault::new(place, problem).advise(REPAIR_LINE))?;
     Ok((models, library.into_inner().0))
 }
 

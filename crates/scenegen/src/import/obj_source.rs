@@ -7,7 +7,7 @@
 use std::io::{self, BufRead, Read};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::error::Warnings;
+use super::error::{Fault, Warnings};
 
 /// Cleaned text, with what the materials pass wants to know.
 pub(super) struct ObjSource {
@@ -17,8 +17,8 @@ pub(super) struct ObjSource {
     pub(super) used_materials: Vec<(usize, String)>,
 }
 
-/// Cleans a file's text.
-pub(super) fn clean(bytes: &[u8], warnings: &mut Warnings) -> ObjSource {
+/// Cleans a file's text; faces that refer to what is not there are errors.
+pub(super) fn clean(bytes: &[u8], warnings: &mut Warnings) -> Result<ObjSource, Fault> {
     let raw = String::from_utf8_lossy(bytes);
     let has_uniform_colors = has_uniform_colors(&raw);
     let mut source = ObjSource {
@@ -27,6 +27,7 @@ pub(super) fn clean(bytes: &[u8], warnings: &mut Warnings) -> ObjSource {
     };
     let (mut points_and_lines, mut short_faces) = (0_usize, 0_usize);
     let mut continued = String::new();
+    let mut references = References::default();
     for (index, line) in raw.lines().enumerate() {
         // A backslash joins lines; the joined line stands where the last one was.
         if let Some(start) = line.trim_end().strip_suffix('\\') {
@@ -41,6 +42,7 @@ pub(super) fn clean(bytes: &[u8], warnings: &mut Warnings) -> ObjSource {
             "v" | "vt" | "vn" | "f" => {
                 let rest = rest.split('#').next().unwrap_or_default();
                 let words: Vec<&str> = rest.split_whitespace().collect();
+                references.note(keyword, &words, index)?;
                 let kept = match (keyword, words.len()) {
                     ("v", 6) if has_uniform_colors => 6,
                     ("v", 4) => 4,
@@ -86,7 +88,8 @@ pub(super) fn clean(bytes: &[u8], warnings: &mut Warnings) -> ObjSource {
             format!("{short_faces} faces have fewer than three corners and are left out"),
         );
     }
-    source
+    references.check(warnings)?;
+    Ok(source)
 }
 
 /// `line N`, counted from 1.
@@ -115,6 +118,86 @@ fn has_uniform_colors(text: &str) -> bool {
                 == 6
         })
 }
+
+/// Checks faces' indices, with their lines, which tobj does late and with arithmetic that overflows.
+#[derive(Default)]
+struct References {
+    /// Positions, texture coordinates and normals so far.
+    counts: [usize; 3],
+    /// The largest index to each of them, counted from 1, and its line.
+    largest: [(usize, usize); 3],
+}
+
+const REFERENCED: [&str; 3] = ["v", "vt", "vn"];
+
+impl References {
+    fn note(&mut self, keyword: &str, words: &[&str], line: usize) -> Result<(), Fault> {
+        if let Some(kind) = REFERENCED
+            .iter()
+            .position(|&referenced| referenced == keyword)
+        {
+            self.counts[kind] += 1;
+            return Ok(());
+        }
+        for corner in words {
+            for (kind, text) in corner
+                .split('/')
+                .enumerate()
+                .take(3)
+                .filter(|(_, text)| !text.is_empty())
+            {
+                let index: i64 = text
+                    .parse()
+                    .map_err(|_| at_line(line, format!("\"{text}\" in a face is not an index")))?;
+                let count = self.counts[kind];
+                // Positive ones may refer to what follows; negative ones count back from here.
+                let absolute = if index < 0 {
+                    index.saturating_add_unsigned(count as u64) + 1
+                } else {
+                    index
+                };
+                if absolute < 1 {
+                    return Err(out_of_range(line, index, kind, count));
+                }
+                self.largest[kind] = self.largest[kind].max((absolute as usize, line));
+            }
+        }
+        Ok(())
+    }
+
+    fn check(&self, warnings: &mut Warnings) -> Result<(), Fault> {
+        for (kind, &(index, line)) in self.largest.iter().enumerate() {
+            if kind > 0 && index > 0 && self.counts[kind] == 0 {
+                // Some exporters leave out the attribute and keep the indices.
+                let message = format!(
+                    "faces refer to {}, of which there are none",
+                    REFERENCED[kind]
+                );
+                warnings.push(line_place(line), message);
+            } else if index > self.counts[kind] {
+                return Err(out_of_range(line, index as i64, kind, self.counts[kind]));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn out_of_range(line: usize, index: i64, kind: usize, count: usize) -> Fault {
+    at_line(
+        line,
+        format!(
+            "a face refers to {} {index}, but there are {count}",
+            REFERENCED[kind]
+        ),
+    )
+}
+
+fn at_line(line: usize, problem: String) -> Fault {
+    Fault::new(line_place(line), problem).advise(REPAIR_LINE)
+}
+
+/// Advice for a line that makes no sense.
+pub(super) const REPAIR_LINE: &str = "repair that line or export the file again";
 
 /// Hands text out one line at a time and counts, so that a parser's error has a line.
 pub(super) struct CountingLines<'a> {

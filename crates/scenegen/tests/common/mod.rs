@@ -1,6 +1,8 @@
 //! Helpers of the import tests.
 #![allow(dead_code, reason = "each test file uses some of them")]
 
+pub(crate) mod gltf_text;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

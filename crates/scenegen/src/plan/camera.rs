@@ -1,0 +1,151 @@
+//! The camera: one of the scene's, one given by the user, or one that frames the scene.
+
+use glam::{Quat, Vec3};
+use residual_render::camera::AnyCamera;
+use residual_render::domain::Buffer;
+use residual_render::scene_data::SceneData;
+
+use super::{PlanError, PlanOptions};
+use crate::desc::{CameraDesc, Projection, SceneDesc, Warning};
+
+/// Which camera is wanted.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub enum CameraChoice {
+    /// The scene's first, or one that frames the scene.
+    #[default]
+    Default,
+    /// The scene's camera of this name or number.
+    Named(String),
+    /// Given outright.
+    View(View),
+}
+
+/// A pinhole camera given by the user. What is `None` is taken from the default camera.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct View {
+    /// Eye.
+    pub eye: Option<[f32; 3]>,
+    /// Direction of view, of any length.
+    pub dir: Option<[f32; 3]>,
+    /// A direction that is up in the image; need not be perpendicular to `dir`.
+    pub up: Option<[f32; 3]>,
+    /// Vertical field of view in degrees.
+    pub fov: Option<f32>,
+}
+
+/// Bounds of the scene in world space.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds {
+    pub(super) lo: Vec3,
+    pub(super) hi: Vec3,
+}
+
+impl Bounds {
+    pub(super) const EMPTY: Self =
+        Self { lo: Vec3::splat(f32::INFINITY), hi: Vec3::splat(f32::NEG_INFINITY) };
+
+    pub(super) fn add(&mut self, p: Vec3) {
+        self.lo = self.lo.min(p);
+        self.hi = self.hi.max(p);
+    }
+
+    /// Centre and radius of the sphere around the box; the unit sphere where there is nothing.
+    pub(super) fn sphere(&self) -> (Vec3, f32) {
+        if self.lo.cmpgt(self.hi).any() {
+            return (Vec3::ZERO, 1.0);
+        }
+        // Halved first: the sum of two large coordinates may overflow.
+        let half = self.hi * 0.5 - self.lo * 0.5;
+        (self.lo * 0.5 + self.hi * 0.5, half.length().clamp(1e-6, 1e30))
+    }
+}
+
+const FRAMING_FOV: f32 = 0.7;
+
+/// A camera from the front, somewhat above and to the right, that sees the whole scene.
+fn framing(bounds: &Bounds, aspect: f32) -> CameraDesc {
+    let (centre, radius) = bounds.sphere();
+    let dir = Vec3::new(-0.27, -0.32, -0.91).normalize();
+    // The narrower of the two fields of view has to hold the sphere.
+    let half = (FRAMING_FOV * 0.5).tan() * aspect.min(1.0);
+    let distance = radius / half.atan().sin();
+    CameraDesc {
+        name: "framing".to_owned(),
+        position: centre - dir * distance,
+        rotation: look(dir, Vec3::Y),
+        projection: Projection::Perspective { yfov: FRAMING_FOV },
+    }
+}
+
+/// The rotation that looks along `dir` with `up` upwards; both may have any length, and be parallel.
+fn look(dir: Vec3, up: Vec3) -> Quat {
+    let back = -dir.normalize_or(Vec3::NEG_Z);
+    let right = up.cross(back).normalize_or(back.any_orthonormal_vector());
+    Quat::from_mat3(&glam::Mat3::from_cols(right, back.cross(right), back))
+}
+
+fn named<'a>(scene: &'a SceneDesc, wanted: &str) -> Result<&'a CameraDesc, PlanError> {
+    let by_name = scene.cameras.iter().find(|camera| camera.name == wanted);
+    let by_number = || wanted.parse::<usize>().ok().and_then(|number| scene.cameras.get(number));
+    by_name.or_else(by_number).ok_or_else(|| {
+        let list = |(number, camera): (usize, &CameraDesc)| format!("{number} {:?}", camera.name);
+        let names: Vec<_> = scene.cameras.iter().enumerate().map(list).collect();
+        let available = if names.is_empty() { "no cameras".to_owned() } else { names.join(", ") };
+        PlanError::NoSuchCamera { wanted: format!("{wanted:?}"), available }
+    })
+}
+
+/// Chooses the camera and writes its buffer.
+pub(super) fn place(
+    scene: &SceneDesc,
+    options: &PlanOptions,
+    bounds: &Bounds,
+    data: &mut SceneData,
+    warnings: &mut Vec<Warning>,
+) -> Result<(AnyCamera, String), PlanError> {
+    let aspect = options.size[0] as f32 / options.size[1] as f32;
+    let default = || scene.cameras.first().cloned().unwrap_or_else(|| framing(bounds, aspect));
+    let camera = match &options.camera {
+        CameraChoice::Default => {
+            if scene.cameras.is_empty() {
+                warnings.push(Warning {
+                    place: "cameras".to_owned(),
+                    message: "the scene has no camera; using one that frames it".to_owned(),
+                });
+            }
+            default()
+        }
+        CameraChoice::Named(wanted) => named(scene, wanted)?.clone(),
+        CameraChoice::View(view) => {
+            let default = default();
+            let up = view.up.map_or(default.rotation * Vec3::Y, Vec3::from);
+            let dir = view.dir.map_or(default.rotation * Vec3::NEG_Z, Vec3::from);
+            CameraDesc {
+                name: "given".to_owned(),
+                position: view.eye.map_or(default.position, Vec3::from),
+                rotation: if view.dir.is_some() || view.up.is_some() {
+                    look(dir, up)
+                } else {
+                    default.rotation
+                },
+                projection: match view.fov {
+                    Some(degrees) => Projection::Perspective { yfov: degrees.to_radians() },
+                    None => default.projection,
+                },
+            }
+        }
+    };
+    let (kind, half_height, forward) = match camera.projection {
+        Projection::Perspective { yfov } => {
+            (AnyCamera::Perspective, (yfov * 0.5).tan(), camera.rotation * Vec3::NEG_Z)
+        }
+        Projection::Orthographic { ymag } => {
+            (AnyCamera::Orthographic, ymag, camera.rotation * Vec3::NEG_Z)
+        }
+    };
+    let right = camera.rotation * Vec3::X * (half_height * aspect);
+    let up = camera.rotation * Vec3::Y * half_height;
+    let words = [camera.position, right, up, forward].into_iter().flat_map(|v| v.to_array());
+    *data.buffer_mut(Buffer::Camera) = words.map(f32::to_bits).collect();
+    Ok((kind, camera.name))
+}

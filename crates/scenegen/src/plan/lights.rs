@@ -1,0 +1,274 @@
+//! Lights: records, and the alias table by which one is picked.
+
+use residual_render::domain::Buffer;
+use residual_render::light::environment::HEADER;
+use residual_render::light::{ALIAS_ENTRY, RECORD};
+use residual_render::program::{ColorNode, LightNode, SourceNode};
+use residual_render::scene_data::SceneData;
+use residual_render::texture::srgb_table;
+
+use super::Materials;
+use super::alias;
+use super::geometry::Geometry;
+use super::images::Images;
+use crate::desc::{
+    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, LightKind, SceneDesc, Texels,
+};
+
+/// The kinds of lights of a scene and how many there are of each.
+#[derive(Debug, Default)]
+pub(super) struct PlannedLights {
+    pub(super) kinds: Vec<LightNode>,
+    pub(super) counts: Vec<usize>,
+    records: Vec<[u32; RECORD as usize]>,
+    /// Power of each light, and the number of its kind.
+    powers: Vec<(f64, usize)>,
+}
+
+/// Plans all lights and writes their buffers.
+pub(super) fn plan_lights(
+    scene: &SceneDesc,
+    materials: &Materials,
+    geometry: &Geometry,
+    images: &mut Images,
+    data: &mut SceneData,
+) -> PlannedLights {
+    let mut lights = PlannedLights::default();
+    let radius = f64::from(geometry.bounds.sphere().1);
+    lights.add_emitting_triangles(scene, materials, geometry, data);
+    for light in &scene.lights {
+        lights.add_punctual(light, radius);
+    }
+    if let Some(environment) = &scene.environment {
+        let image = &scene.images[environment.image];
+        lights.add_environment(environment, image, images.place(scene, environment.image), radius, data);
+    }
+    lights.write(data);
+    lights
+}
+
+/// Luminance of a colour.
+fn luminance(c: [f32; 3]) -> f64 {
+    0.2126 * f64::from(c[0]) + 0.7152 * f64::from(c[1]) + 0.0722 * f64::from(c[2])
+}
+
+/// Mean luminance of an emission, texture included.
+fn mean_emission(scene: &SceneDesc, input: &ColorInput) -> f64 {
+    let Some(texture) = &input.texture else { return luminance(input.factor) };
+    let image = &scene.images[scene.textures[texture.texture].image];
+    let [r, g, b] = input.factor;
+    let sum: f64 = match &image.texels {
+        Texels::Rgba8(texels) => {
+            let table = srgb_table();
+            let decode = |code: u8| table[usize::from(code)];
+            let texel = |t: &[u8; 4]| luminance([r * decode(t[0]), g * decode(t[1]), b * decode(t[2])]);
+            texels.iter().map(texel).sum()
+        }
+        Texels::RgbaF32(texels) => {
+            texels.iter().map(|t| luminance([r * t[0], g * t[1], b * t[2]])).sum()
+        }
+    };
+    sum / (f64::from(image.width) * f64::from(image.height))
+}
+
+impl PlannedLights {
+    fn kind(&mut self, node: LightNode) -> usize {
+        let found = self.kinds.iter().position(|kind| *kind == node);
+        found.unwrap_or_else(|| {
+            self.kinds.push(node);
+            self.counts.push(0);
+            self.kinds.len() - 1
+        })
+    }
+
+    fn push(&mut self, kind: usize, power: f64, words: &[u32]) {
+        let mut record = [0; RECORD as usize];
+        record[0] = kind as u32;
+        record[1..=words.len()].copy_from_slice(words);
+        self.records.push(record);
+        self.powers.push((power, kind));
+        self.counts[kind] += 1;
+    }
+
+    fn add_emitting_triangles(
+        &mut self,
+        scene: &SceneDesc,
+        materials: &Materials,
+        geometry: &Geometry,
+        data: &mut SceneData,
+    ) {
+        let (positions, triangles) = (data.positions(), data.triangles());
+        for (range, material) in &geometry.ranges {
+            let planned = materials.of(*material);
+            let program = &materials.programs[planned.program as usize];
+            let Some(emission) = program.emission else { continue };
+            let SourceNode::Color(source) = &program.inputs[emission.radiance.0].source else {
+                unreachable!("emission is a colour")
+            };
+            let node = LightNode::Area { emission: source.clone(), attributes: reads(source, program.attributes) };
+            let radiance = mean_emission(scene, &scene.materials[*material].emission);
+            let sides = if emission.double_sided { 2.0 } else { 1.0 };
+            let kind = self.kind(node);
+            for prim in range.clone() {
+                let corners = triangles[prim as usize].map(|corner| {
+                    glam::DVec3::from_array(positions[corner as usize].map(f64::from))
+                });
+                let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length() * 0.5;
+                let power = std::f64::consts::PI * sides * area * radiance;
+                if power > 0.0 && power.is_finite() {
+                    let number = self.records.len() as u32;
+                    data.buffer_mut(Buffer::TriangleLights)[prim as usize] = number;
+                    self.push(kind, power, &[prim, u32::from(emission.double_sided)]);
+                }
+            }
+        }
+    }
+
+    fn add_punctual(&mut self, light: &LightDesc, radius: f64) {
+        let strength = luminance(light.intensity);
+        if strength <= 0.0 {
+            return;
+        }
+        let words = |vectors: &[[f32; 3]]| -> Vec<u32> {
+            vectors.iter().flatten().map(|c| c.to_bits()).collect()
+        };
+        let sphere = 4.0 * std::f64::consts::PI;
+        match light.kind {
+            LightKind::Point { position } => {
+                let kind = self.kind(LightNode::Point);
+                self.push(kind, sphere * strength, &words(&[position.to_array(), light.intensity]));
+            }
+            LightKind::Spot { position, direction, inner, outer } => {
+                let kind = self.kind(LightNode::Spot);
+                // KHR_lights_punctual: scale = 1/(cos inner − cos outer), offset = −cos outer·scale.
+                let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
+                let mut record =
+                    words(&[position.to_array(), light.intensity, direction.to_array()]);
+                record.extend([scale, -outer.cos() * scale].map(f32::to_bits));
+                let cone = 0.5 * sphere * (1.0 - f64::from(outer.cos()));
+                self.push(kind, cone * strength, &record);
+            }
+            LightKind::Directional { direction } => {
+                let kind = self.kind(LightNode::Directional);
+                let power = std::f64::consts::PI * radius * radius * strength;
+                self.push(kind, power, &words(&[(-direction).to_array(), light.intensity]));
+            }
+        }
+    }
+
+    fn add_environment(
+        &mut self,
+        environment: &EnvironmentDesc,
+        image: &ImageDesc,
+        place: [u32; 3],
+        radius: f64,
+        data: &mut SceneData,
+    ) {
+        let weights = texel_weights(image);
+        let total: f64 = weights.iter().sum();
+        if total <= 0.0 || environment.strength <= 0.0 {
+            return;
+        }
+        let number = self.records.len() as u32;
+        let kind = self.kind(LightNode::Environment);
+        // The weights' mean is the mean of luminance·sin θ; ∫L dω = 2π²·that.
+        let mean = total / weights.len() as f64;
+        let irradiance = 2.0 * std::f64::consts::PI.powi(2) * mean * f64::from(environment.strength);
+        self.push(kind, std::f64::consts::PI * radius * radius * irradiance, &[]);
+
+        let (sin, cos) = environment.rotation.sin_cos();
+        let header = [
+            place[1],
+            place[2],
+            place[0],
+            environment.strength.to_bits(),
+            cos.to_bits(),
+            sin.to_bits(),
+            number,
+            0,
+        ];
+        debug_assert_eq!(header.len(), HEADER as usize);
+        let buffer = data.buffer_mut(Buffer::Environment);
+        buffer.reserve_exact(header.len() + weights.len() * ALIAS_ENTRY as usize);
+        buffer.extend(header);
+        for (slot, weight) in alias::table(&weights).iter().zip(&weights) {
+            let density = (weight / mean) as f32;
+            buffer.extend([slot.threshold.to_bits(), slot.alias, density.to_bits()]);
+        }
+    }
+
+    /// Half of the picks go by power, half evenly to each kind, so that a bright sky outside does not starve the
+    /// lamps inside.
+    fn write(&self, data: &mut SceneData) {
+        let total: f64 = self.powers.iter().map(|(power, _)| power).sum();
+        let of_kind = |kind: usize| -> f64 {
+            self.powers.iter().filter(|(_, other)| *other == kind).map(|(power, _)| power).sum()
+        };
+        let kinds: Vec<f64> = (0..self.kinds.len()).map(of_kind).collect();
+        let probability = |&(power, kind): &(f64, usize)| {
+            0.5 * power / total + 0.5 * power / kinds[kind] / kinds.len() as f64
+        };
+        let probabilities: Vec<f64> = self.powers.iter().map(probability).collect();
+        let alias = data.buffer_mut(Buffer::LightAlias);
+        alias.push(probabilities.len() as u32);
+        if !probabilities.is_empty() {
+            for (slot, p) in alias::table(&probabilities).iter().zip(&probabilities) {
+                alias.extend([slot.threshold.to_bits(), slot.alias, (*p as f32).to_bits()]);
+            }
+        }
+        *data.buffer_mut(Buffer::Lights) = self.records.concat();
+    }
+}
+
+/// The integral of luminance over each texel of the bilinear image, times the sine of the row's angle: the image
+/// convolved with (1, 6, 1)/8 along both axes.
+fn texel_weights(image: &ImageDesc) -> Vec<f64> {
+    let (width, height) = (image.width as usize, image.height as usize);
+    let Texels::RgbaF32(texels) = &image.texels else {
+        unreachable!("environments are imported as floats")
+    };
+    let value = |x: usize, y: usize| {
+        let t = texels[y * width + x];
+        luminance([t[0], t[1], t[2]])
+    };
+    let mut weights = Vec::with_capacity(width * height);
+    for y in 0..height {
+        let rows = [y.saturating_sub(1), y, (y + 1).min(height - 1)];
+        let sin = (std::f64::consts::PI * (y as f64 + 0.5) / height as f64).sin();
+        for x in 0..width {
+            let columns = [(x + width - 1) % width, x, (x + 1) % width];
+            let row = |y: usize| {
+                (value(columns[0], y) + 6.0 * value(columns[1], y) + value(columns[2], y)) / 8.0
+            };
+            weights.push((row(rows[0]) + 6.0 * row(rows[1]) + row(rows[2])) / 8.0 * sin);
+        }
+    }
+    weights
+}
+
+/// The attributes of a program that one of its colours reads.
+fn reads(node: &ColorNode, of: residual_render::surface::Attributes) -> residual_render::surface::Attributes {
+    use residual_render::program::ScalarNode;
+    use residual_render::surface::Attributes;
+    fn scalar(node: &ScalarNode, of: Attributes) -> Attributes {
+        match node {
+            ScalarNode::Const(_) | ScalarNode::Param(_) => Attributes::NONE,
+            ScalarNode::VertexAlpha => Attributes { colors: of.colors, ..Attributes::NONE },
+            ScalarNode::Image(image) => uv(image.uv.set, of),
+            ScalarNode::Product(a, b) => scalar(a, of).union(scalar(b, of)),
+        }
+    }
+    fn uv(set: usize, of: Attributes) -> Attributes {
+        match set {
+            0 => Attributes { uv0: of.uv0, ..Attributes::NONE },
+            _ => Attributes { uv1: of.uv1, ..Attributes::NONE },
+        }
+    }
+    match node {
+        ColorNode::Const(_) | ColorNode::Param(_) => Attributes::NONE,
+        ColorNode::VertexColor => Attributes { colors: of.colors, ..Attributes::NONE },
+        ColorNode::Image(image) => uv(image.uv.set, of),
+        ColorNode::Gray(node) => scalar(node, of),
+        ColorNode::Product(a, b) => reads(a, of).union(reads(b, of)),
+    }
+}

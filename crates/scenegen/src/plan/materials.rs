@@ -1,0 +1,303 @@
+//! Materials to programs: which inputs there are, when each is known, and which materials share a program.
+
+use std::collections::BTreeMap;
+
+use residual_render::alpha::AlphaTest;
+use residual_render::program::{
+    AlphaNode, BsdfNode, ColorNode, EmissionNode, InputNode, NormalNode, Program, ScalarNode,
+    SourceNode,
+};
+use residual_render::surface::Attributes;
+use residual_render::texture::Input;
+
+use super::geometry::is_smooth;
+use super::images::Images;
+use super::sources::Sources;
+use super::{CullingRule, Materials, PlanOptions, PlannedMaterial};
+use crate::desc::{
+    AlphaMode, MaterialDesc, MetallicRoughness, Phong, SceneDesc, SurfaceDesc, Warning,
+};
+
+/// Plans the materials of all instanced meshes.
+pub(super) fn plan_materials(
+    scene: &SceneDesc,
+    options: &PlanOptions,
+    images: &mut Images,
+    warnings: &mut Vec<Warning>,
+) -> Materials {
+    let mut materials = Materials { planned: vec![None; scene.materials.len()], ..Materials::default() };
+    let mut numbers = BTreeMap::new();
+    for (number, available) in available_attributes(scene).into_iter().enumerate() {
+        let Some(available) = available else { continue };
+        let desc = &scene.materials[number];
+        let sources = Sources::new(scene, options.binding, available, images);
+        let mut builder = Builder { sources, inputs: Vec::new(), warnings, name: &desc.name };
+        let (program, invisible) = builder.program(desc, available);
+        let params = builder.sources.into_params();
+        let transmits = bsdf_transmits(&program.bsdf);
+        // Programs are the same if they print the same: floats print exactly, so this neither merges nor splits
+        // what must not be.
+        let key = format!("{program:?}");
+        let index = *numbers.entry(key).or_insert_with(|| {
+            materials.programs.push(program);
+            materials.names.push(Vec::new());
+            materials.programs.len() as u32 - 1
+        });
+        materials.names[index as usize].push(format!("materials/{number} {:?}", desc.name));
+        materials.planned[number] = Some(PlannedMaterial {
+            program: index,
+            params: materials.params.len() as u32,
+            culled: options.culling == CullingRule::Gltf && !desc.double_sided && !transmits,
+            invisible,
+        });
+        materials.params.extend(params);
+    }
+    materials
+}
+
+/// For each material that some instance uses, the attributes that any of its meshes has.
+fn available_attributes(scene: &SceneDesc) -> Vec<Option<Attributes>> {
+    let mut available = vec![None; scene.materials.len()];
+    let mut seen = vec![false; scene.meshes.len()];
+    for instance in &scene.instances {
+        let mesh = &scene.meshes[instance.mesh];
+        if std::mem::replace(&mut seen[instance.mesh], true) {
+            continue;
+        }
+        let has = Attributes {
+            normals: is_smooth(mesh),
+            tangents: mesh.tangents.is_some(),
+            uv0: mesh.uvs[0].is_some(),
+            uv1: mesh.uvs[1].is_some(),
+            colors: mesh.colors.is_some(),
+        };
+        let all: &mut Option<Attributes> = &mut available[mesh.material];
+        *all = Some(all.unwrap_or_default().union(has));
+    }
+    available
+}
+
+fn bsdf_transmits(bsdf: &BsdfNode) -> bool {
+    match bsdf {
+        BsdfNode::Dielectric { .. } => true,
+        BsdfNode::Mix { a, b, .. } | BsdfNode::Sum { a, b, .. } => {
+            bsdf_transmits(a) || bsdf_transmits(b)
+        }
+        BsdfNode::Black
+        | BsdfNode::Diffuse { .. }
+        | BsdfNode::Conductor { .. }
+        | BsdfNode::Glossy { .. }
+        | BsdfNode::Phong { .. } => false,
+    }
+}
+
+/// Builds one program.
+struct Builder<'a> {
+    sources: Sources<'a>,
+    inputs: Vec<InputNode>,
+    warnings: &'a mut Vec<Warning>,
+    name: &'a str,
+}
+
+impl Builder<'_> {
+    fn program(&mut self, desc: &MaterialDesc, available: Attributes) -> (Program, bool) {
+        let normal = desc.normal_map.as_ref().filter(|_| available.tangents).map(|map| {
+            let texel = self.sources.linear_texel(&map.texture);
+            let scale = self.sources.number(map.scale);
+            NormalNode {
+                texel: self.color("normal_texel", texel),
+                scale: self.scalar("normal_scale", scale),
+            }
+        });
+        let bsdf = match &desc.surface {
+            SurfaceDesc::MetallicRoughness(surface) => self.metallic_roughness(surface),
+            SurfaceDesc::Phong(surface) => self.phong(surface),
+            SurfaceDesc::Dielectric { ior, transmittance } => {
+                let tint = self.sources.constant_color(*transmittance);
+                self.dielectric(tint, *ior, true)
+            }
+        };
+        let emission = self.sources.color(&desc.emission, false);
+        let emission = (!is_black(&emission)).then(|| EmissionNode {
+            radiance: self.color("emission", emission),
+            double_sided: desc.double_sided,
+        });
+        let mut attributes = self.sources.take_attributes();
+        attributes.normals |= available.normals;
+        attributes.tangents |= normal.is_some();
+        let (alpha, invisible) = self.alpha(desc);
+        let inputs = std::mem::take(&mut self.inputs);
+        (Program { attributes, inputs, normal, emission, bsdf, alpha }, invisible)
+    }
+
+    fn input(&mut self, name: &'static str, source: SourceNode) -> Input {
+        let node = InputNode { name, source };
+        // The same source under the same name is the same input.
+        let found = self.inputs.iter().position(|other| *other == node);
+        Input(found.unwrap_or_else(|| {
+            self.inputs.push(node);
+            self.inputs.len() - 1
+        }))
+    }
+
+    fn color(&mut self, name: &'static str, node: ColorNode) -> Input {
+        self.input(name, SourceNode::Color(node))
+    }
+
+    fn scalar(&mut self, name: &'static str, node: ScalarNode) -> Input {
+        self.input(name, SourceNode::Scalar(node))
+    }
+
+    fn diffuse(&mut self, albedo: ColorNode) -> BsdfNode {
+        if is_black(&albedo) {
+            return BsdfNode::Black;
+        }
+        BsdfNode::Diffuse { albedo: self.color("albedo", albedo) }
+    }
+
+    fn dielectric(&mut self, tint: ColorNode, ior: f32, solid: bool) -> BsdfNode {
+        let ior = self.sources.number(ior);
+        BsdfNode::Dielectric {
+            transmittance: self.color("transmittance", tint),
+            ior: self.scalar("ior", ior),
+            solid,
+        }
+    }
+
+    /// glTF 2.0, appendix B.3.5: `mix(dielectric, metal, metallic)`.
+    fn metallic_roughness(&mut self, surface: &MetallicRoughness) -> BsdfNode {
+        let base = self.sources.color(&surface.base_color, true);
+        let roughness = self.sources.scalar(&surface.roughness);
+        let metallic = self.sources.scalar(&surface.metallic);
+        if metallic == ScalarNode::Const(0.0) {
+            return self.dielectric_part(surface, base, roughness);
+        }
+        let metal = BsdfNode::Conductor {
+            color: self.color("albedo", base.clone()),
+            roughness: self.scalar("roughness", roughness.clone()),
+        };
+        if metallic == ScalarNode::Const(1.0) {
+            return metal;
+        }
+        BsdfNode::Mix {
+            a: Box::new(self.dielectric_part(surface, base, roughness)),
+            b: Box::new(metal),
+            weight: self.scalar("metallic", metallic),
+        }
+    }
+
+    /// `mix(opaque, transmitting, transmission)` under the same coat.
+    fn dielectric_part(
+        &mut self,
+        surface: &MetallicRoughness,
+        base: ColorNode,
+        roughness: ScalarNode,
+    ) -> BsdfNode {
+        let transmission = self.sources.scalar(&surface.transmission);
+        if transmission == ScalarNode::Const(0.0) {
+            return self.opaque_dielectric(surface, base, roughness);
+        }
+        if surface.roughness.factor > 0.0 {
+            self.warnings.push(Warning {
+                place: format!("material {:?}", self.name),
+                message: "KHR_materials_transmission on a rough surface is rendered as if smooth"
+                    .to_owned(),
+            });
+        }
+        let clear = self.dielectric(base.clone(), surface.ior, surface.solid);
+        if transmission == ScalarNode::Const(1.0) {
+            return clear;
+        }
+        BsdfNode::Mix {
+            a: Box::new(self.opaque_dielectric(surface, base, roughness)),
+            b: Box::new(clear),
+            weight: self.scalar("transmission", transmission),
+        }
+    }
+
+    /// A diffuse base under a coat, or without one where the coat reflects nothing.
+    fn opaque_dielectric(
+        &mut self,
+        surface: &MetallicRoughness,
+        albedo: ColorNode,
+        roughness: ScalarNode,
+    ) -> BsdfNode {
+        // KHR_materials_specular and KHR_materials_ior: F0 = min(((η−1)/(η+1))²·colour, 1)·strength, F90 = strength.
+        let grazing = self.sources.scalar(&surface.specular);
+        let normal_incidence = ((surface.ior - 1.0) / (surface.ior + 1.0)).powi(2);
+        let mut at_normal = surface.specular_color.clone();
+        at_normal.factor =
+            at_normal.factor.map(|c| (c * normal_incidence).min(1.0) * surface.specular.factor);
+        let reflectance = self.sources.color(&at_normal, false);
+        if grazing == ScalarNode::Const(0.0) || (is_black(&reflectance) && surface.ior == 1.0) {
+            return self.diffuse(albedo);
+        }
+        let reflectance = match &surface.specular.texture {
+            Some((texture, channel)) => {
+                let strength = ColorNode::Gray(Box::new(self.sources.channel(texture, *channel)));
+                self.sources.color_product(reflectance, strength)
+            }
+            None => reflectance,
+        };
+        BsdfNode::Glossy {
+            albedo: self.color("albedo", albedo),
+            roughness: self.scalar("roughness", roughness),
+            reflectance: self.color("reflectance", reflectance),
+            grazing: self.scalar("grazing_reflectance", grazing),
+        }
+    }
+
+    fn phong(&mut self, surface: &Phong) -> BsdfNode {
+        let albedo = self.sources.color(&surface.diffuse, true);
+        let specular = self.sources.color(&surface.specular, false);
+        let diffuse = self.diffuse(albedo);
+        if is_black(&specular) {
+            return diffuse;
+        }
+        let exponent = self.sources.scalar(&surface.exponent);
+        let lobe = BsdfNode::Phong {
+            color: self.color("specular", specular),
+            exponent: self.scalar("exponent", exponent),
+        };
+        if diffuse == BsdfNode::Black {
+            return lobe;
+        }
+        let weight = |factor: [f32; 3]| factor.iter().sum::<f32>();
+        let share = weight(surface.specular.factor)
+            / (weight(surface.specular.factor) + weight(surface.diffuse.factor));
+        let probability = self.sources.number(share.clamp(0.1, 0.9));
+        BsdfNode::Sum {
+            a: Box::new(diffuse),
+            b: Box::new(lobe),
+            probability: self.scalar("specular_probability", probability),
+        }
+    }
+
+    /// The alpha test, if it can ever fail, and whether it always does.
+    fn alpha(&mut self, desc: &MaterialDesc) -> (Option<AlphaNode>, bool) {
+        let test = match desc.alpha_mode {
+            AlphaMode::Opaque => return (None, false),
+            AlphaMode::Mask(cutoff) => AlphaTest::Mask(cutoff),
+            AlphaMode::Blend => AlphaTest::Blend,
+        };
+        if let Some(alpha) = self.sources.known_alpha(&desc.alpha) {
+            match test {
+                AlphaTest::Mask(cutoff) => return (None, alpha < cutoff),
+                AlphaTest::Blend if alpha >= 1.0 => return (None, false),
+                AlphaTest::Blend if alpha <= 0.0 => return (None, true),
+                AlphaTest::Blend => {}
+            }
+        }
+        let alpha = self.sources.alpha(&desc.alpha);
+        let test = match test {
+            AlphaTest::Mask(cutoff) => AlphaTest::Mask(self.sources.number(cutoff)),
+            AlphaTest::Blend => AlphaTest::Blend,
+        };
+        let attributes = self.sources.take_attributes();
+        (Some(AlphaNode { alpha, test, attributes }), false)
+    }
+}
+
+fn is_black(node: &ColorNode) -> bool {
+    *node == ColorNode::Const([0.0; 3])
+}

@@ -1,0 +1,218 @@
+//! The plan: what is static in a scene, and where its dynamic data lie.
+//!
+//! [`SceneDesc`] → `Plan`: a [`Structure`] (programs, kinds of lights, of the camera, of the sampler) that emitters
+//! print and interpreters build, and the [`SceneData`] that it reads. Materials whose structure agrees share a
+//! program; what distinguishes them are parameters.
+
+mod alias;
+mod camera;
+mod geometry;
+mod images;
+mod lights;
+mod materials;
+mod sources;
+
+use residual_render::domain::Buffer;
+use residual_render::program::{Culling, Program, Structure};
+use residual_render::sampler::AnySampler;
+use residual_render::scene_data::SceneData;
+use residual_render::texture::srgb_table;
+
+pub use camera::{CameraChoice, View};
+
+use crate::desc::{EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning};
+
+/// When an input's value is known to the compiler.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Binding {
+    /// 0 and 1, which remove code, are constants; other numbers are parameters, so that materials of the same
+    /// structure share a program and an edited colour needs no compiler.
+    #[default]
+    Structure,
+    /// Every number is a constant, as in the thesis.
+    Constants,
+}
+
+/// Which triangles are seen from behind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CullingRule {
+    /// Single-sided surfaces that transmit nothing are seen, block and emit from their front only.
+    #[default]
+    Gltf,
+    /// Both sides of every surface block light.
+    None,
+}
+
+/// The user's choices.
+#[derive(Debug, Clone)]
+pub struct PlanOptions {
+    /// Binding times.
+    pub binding: Binding,
+    /// Which camera.
+    pub camera: CameraChoice,
+    /// Width and height of the image in pixels.
+    pub size: [u32; 2],
+    /// Culling.
+    pub culling: CullingRule,
+    /// Sampler.
+    pub sampler: AnySampler,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        Self {
+            binding: Binding::default(),
+            camera: CameraChoice::default(),
+            size: [640, 480],
+            culling: CullingRule::default(),
+            sampler: AnySampler::Sobol,
+        }
+    }
+}
+
+/// A scene, analysed.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The scene's name.
+    pub name: String,
+    /// The static half.
+    pub structure: Structure,
+    /// The dynamic half.
+    pub data: SceneData,
+    /// For each program, the materials that use it.
+    pub materials: Vec<Vec<String>>,
+    /// For each kind of light, how many lights there are.
+    pub light_counts: Vec<usize>,
+    /// The camera that was chosen.
+    pub camera_name: String,
+    /// What was changed or left out.
+    pub warnings: Vec<Warning>,
+}
+
+/// What planning a scene can fail at.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// The camera asked for is not there.
+    #[error("there is no camera {wanted}; the scene has {available}")]
+    NoSuchCamera {
+        /// As the user wrote it.
+        wanted: String,
+        /// What there is.
+        available: String,
+    },
+    /// The scene needs more than 2³² words of something, or more than 2³¹ triangles.
+    #[error("the scene is too large: its {what} do not fit 32-bit indices; split it or simplify it")]
+    TooLarge {
+        /// What is too large.
+        what: &'static str,
+    },
+}
+
+/// Plans a scene.
+///
+/// # Errors
+/// If the camera asked for does not exist, or the scene does not fit 32-bit indices.
+pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError> {
+    if !scene.has_light() {
+        let mut plan = plan(&scene.with_white_sky(), options)?;
+        plan.warnings.push(Warning {
+            place: "lights".to_owned(),
+            message: "the scene has no light; using a white sky (--env FILE for another)".to_owned(),
+        });
+        return Ok(plan);
+    }
+    let mut warnings = Vec::new();
+    let mut data = SceneData::default();
+    let mut images = images::Images::default();
+
+    let materials = materials::plan_materials(scene, options, &mut images, &mut warnings);
+    let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
+    let lights = lights::plan_lights(scene, &materials, &geometry, &mut images, &mut data);
+    let (camera, camera_name) =
+        camera::place(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
+    images.pack(scene, &mut data)?;
+    *data.buffer_mut(Buffer::Params) = materials.params;
+    *data.buffer_mut(Buffer::Tables) = srgb_table().map(f32::to_bits).to_vec();
+
+    Ok(Plan {
+        name: scene.name.clone(),
+        structure: Structure {
+            programs: materials.programs,
+            lights: lights.kinds,
+            camera,
+            sampler: options.sampler,
+            culling: geometry.culling,
+        },
+        data,
+        materials: materials.names,
+        light_counts: lights.counts,
+        camera_name,
+        warnings,
+    })
+}
+
+/// What a triangle's material amounts to.
+#[derive(Debug, Clone)]
+struct PlannedMaterial {
+    /// Number of its program.
+    program: u32,
+    /// First word of its parameters.
+    params: u32,
+    /// Its surfaces are not seen from behind.
+    culled: bool,
+    /// Alpha is never enough: the surface is not there at all.
+    invisible: bool,
+}
+
+/// All materials, planned. Those that no instance uses are not.
+#[derive(Debug, Clone, Default)]
+struct Materials {
+    programs: Vec<Program>,
+    names: Vec<Vec<String>>,
+    params: Vec<u32>,
+    /// By the material's number in the description.
+    planned: Vec<Option<PlannedMaterial>>,
+}
+
+impl Materials {
+    fn of(&self, material: usize) -> &PlannedMaterial {
+        self.planned[material].as_ref().expect("materials of instanced meshes are planned")
+    }
+}
+
+impl SceneDesc {
+    /// Something shines: an environment, a punctual light, or the material of an instance.
+    fn has_light(&self) -> bool {
+        let emits = |&color: &[f32; 3]| color.iter().any(|c| *c > 0.0);
+        self.environment.is_some()
+            || self.lights.iter().any(|light| emits(&light.intensity))
+            || self.instances.iter().any(|instance| {
+                emits(&self.materials[self.meshes[instance.mesh].material].emission.factor)
+            })
+    }
+
+    /// The scene under a sky of radiance 1.
+    fn with_white_sky(&self) -> Self {
+        let mut scene = self.clone();
+        scene.images.push(ImageDesc {
+            name: "white sky".to_owned(),
+            width: 1,
+            height: 1,
+            texels: Texels::RgbaF32(vec![[1.0; 4]]),
+        });
+        let image = scene.images.len() - 1;
+        scene.environment = Some(EnvironmentDesc { image, strength: 1.0, rotation: 0.0 });
+        scene
+    }
+}
+
+/// Which sides are seen, given how many triangles are culled.
+fn culling(culled: usize, triangles: usize) -> Culling {
+    if culled == 0 {
+        Culling::None
+    } else if culled == triangles {
+        Culling::Back
+    } else {
+        Culling::PerTriangle
+    }
+}

@@ -1,0 +1,281 @@
+//! glTF materials, textures and images, feature by feature.
+
+use std::f32::consts::FRAC_PI_2;
+
+use common::gltf_text::{F32, Gltf, U8, f32_bytes, warns};
+use residual_scenegen::desc::{
+    AlphaMode, Filter, MaterialDesc, MetallicRoughness, SurfaceDesc, Texels, Wrap,
+};
+use residual_scenegen::import::{ImportError, ImportOptions};
+use serde_json::{Value, json};
+
+mod common;
+
+fn square_with(material: Value) -> Gltf {
+    let mut gltf = Gltf::square();
+    gltf.attribute("TEXCOORD_0", "VEC2", F32, &f32_bytes(&[0.; 8]), 4);
+    gltf.attribute("TEXCOORD_1", "VEC2", F32, &f32_bytes(&[0.; 8]), 4);
+    gltf.indices(U8, &[0, 1, 2], 3);
+    gltf.json["materials"] = json!([material]);
+    gltf.primitive()["material"] = json!(0);
+    gltf.json["textures"] = json!([{ "source": 0 }, { "source": 0, "sampler": 0 }]);
+    gltf.json["samplers"] = json!([{ "magFilter": 9728, "wrapS": 33071, "wrapT": 33648 }]);
+    let mut png = Vec::new();
+    let pixel = image::RgbaImage::from_pixel(1, 1, image::Rgba([10, 20, 30, 40]));
+    pixel
+        .write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png)
+        .unwrap();
+    let view = gltf.view(&png);
+    gltf.json["images"] = json!([{ "bufferView": view, "mimeType": "image/png" }]);
+    gltf
+}
+
+fn surface(material: &MaterialDesc) -> &MetallicRoughness {
+    match &material.surface {
+        SurfaceDesc::MetallicRoughness(surface) => surface,
+        SurfaceDesc::Phong(_) | SurfaceDesc::Dielectric { .. } => panic!("{material:?}"),
+    }
+}
+
+#[test]
+fn defaults_are_those_of_the_specification() {
+    let mut gltf = Gltf::square();
+    gltf.indices(U8, &[0, 1, 2], 3);
+    let scene = gltf.import().unwrap();
+    let material = &scene.materials[0];
+    let surface = surface(material);
+    assert_eq!(surface.base_color.factor, [1.0; 3]);
+    assert_eq!(
+        (
+            surface.metallic.factor,
+            surface.roughness.factor,
+            surface.ior
+        ),
+        (1.0, 1.0, 1.5)
+    );
+    assert_eq!(
+        (surface.specular.factor, surface.specular_color.factor),
+        (1.0, [1.0; 3])
+    );
+    assert_eq!((surface.transmission.factor, surface.solid), (0.0, false));
+    assert_eq!(
+        (material.alpha_mode, material.double_sided),
+        (AlphaMode::Opaque, false)
+    );
+    assert_eq!(material.emission.factor, [0.0; 3]);
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn material_extensions_and_textures_are_read() {
+    let scene = square_with(json!({
+        "name": "all",
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [0.1, 0.2, 0.3, 0.4],
+            "baseColorTexture": { "index": 1 },
+            "metallicFactor": 0.5,
+            "metallicRoughnessTexture": { "index": 0, "texCoord": 1 },
+        },
+        "emissiveFactor": [0.5, 0, 0],
+        "alphaMode": "MASK",
+        "alphaCutoff": 0.25,
+        "doubleSided": true,
+        "extensions": {
+            "KHR_materials_emissive_strength": { "emissiveStrength": 8 },
+            "KHR_materials_ior": { "ior": 0 },
+            "KHR_materials_specular": {
+                "specularFactor": 0.5, "specularTexture": { "index": 0 },
+                "specularColorFactor": [1, 2, 3], "specularColorTexture": { "index": 0 },
+            },
+            "KHR_materials_transmission": { "transmissionFactor": 0.75, "transmissionTexture": { "index": 0 } },
+            "KHR_materials_volume": {
+                "thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1, 0.5, 1],
+            },
+        },
+    }))
+    .import()
+    .unwrap();
+    let material = &scene.materials[0];
+    let surface = surface(material);
+    assert_eq!(surface.base_color.factor, [0.1, 0.2, 0.3]);
+    assert_eq!(material.alpha.factor, 0.4);
+    assert_eq!(
+        material.alpha.texture.as_ref().map(|(_, channel)| *channel),
+        Some(3)
+    );
+    assert_eq!(
+        material.alpha.texture.as_ref().map(|(texture, _)| texture),
+        surface.base_color.texture.as_ref()
+    );
+    let channels = [
+        &surface.metallic,
+        &surface.roughness,
+        &surface.specular,
+        &surface.transmission,
+    ]
+    .map(|input| input.texture.as_ref().unwrap().1);
+    assert_eq!(channels, [2, 1, 3, 0]);
+    assert_eq!(surface.metallic.texture.as_ref().unwrap().0.uv_set, 1);
+    assert_eq!(
+        (
+            surface.ior,
+            surface.specular.factor,
+            surface.transmission.factor
+        ),
+        (0.0, 0.5, 0.75)
+    );
+    assert_eq!(surface.specular_color.factor, [1., 2., 3.]);
+    assert!(surface.solid && material.double_sided);
+    assert_eq!(material.emission.factor, [4., 0., 0.]);
+    assert_eq!(material.alpha_mode, AlphaMode::Mask(0.25));
+    assert!(warns(&scene, "materials/0 \"all\"", "attenuation"));
+    assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
+
+    assert_eq!(scene.images.len(), 1, "decoded once");
+    let Texels::Rgba8(texels) = &scene.images[0].texels else {
+        panic!("8 bits")
+    };
+    assert_eq!(texels, &[[10, 20, 30, 40]]);
+    let base = &scene.textures[surface.base_color.texture.as_ref().unwrap().texture];
+    assert_eq!(
+        (base.wrap, base.filter),
+        ([Wrap::Clamp, Wrap::Mirror], Filter::Nearest)
+    );
+}
+
+#[test]
+fn texture_transforms_turn_scale_and_shift() {
+    let transform =
+        json!({ "offset": [0.5, 0.25], "rotation": FRAC_PI_2, "scale": [2, 3], "texCoord": 1 });
+    let extensions = json!({ "KHR_texture_transform": transform });
+    let scene = square_with(json!({
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "extensions": extensions } },
+        "normalTexture": { "index": 0, "scale": 0.5, "extensions": extensions },
+    }))
+    .import()
+    .unwrap();
+    let material = &scene.materials[0];
+    let normal_map = material.normal_map.as_ref().unwrap();
+    assert_eq!(normal_map.scale, 0.5);
+    for texture in [
+        surface(material).base_color.texture.as_ref().unwrap(),
+        &normal_map.texture,
+    ] {
+        assert_eq!(texture.uv_set, 1);
+        let expected = [[0., 3., 0.5], [-2., 0., 0.25]];
+        for (row, expected) in texture.transform.unwrap().iter().zip(expected) {
+            for (value, expected) in row.iter().zip(expected) {
+                assert!((value - expected).abs() < 1e-6, "{:?}", texture.transform);
+            }
+        }
+    }
+}
+
+#[test]
+fn extensions_that_are_not_rendered_are_named_with_their_material() {
+    let scene = square_with(json!({
+        "name": "paint",
+        "extensions": {
+            "KHR_materials_clearcoat": { "clearcoatFactor": 1 },
+            "KHR_materials_sheen": { "sheenColorFactor": [0, 0, 0] },
+            "KHR_materials_iridescence": {},
+            "ACME_glitter": {},
+        },
+    }))
+    .import()
+    .unwrap();
+    assert!(warns(
+        &scene,
+        "materials/0 \"paint\"",
+        "KHR_materials_clearcoat"
+    ));
+    assert!(warns(&scene, "materials/0 \"paint\"", "ACME_glitter"));
+    assert_eq!(
+        scene.warnings.len(),
+        2,
+        "those without effect are not mentioned: {:?}",
+        scene.warnings
+    );
+
+    let gltf = square_with(json!({ "name": "flat", "extensions": { "KHR_materials_unlit": {} } }));
+    let scene = gltf.import().unwrap();
+    assert!(warns(&scene, "materials/0 \"flat\"", "KHR_materials_unlit"));
+    let flat = surface(&scene.materials[0]);
+    assert_eq!((flat.metallic.factor, flat.specular.factor), (0.0, 0.0));
+    match gltf.import_with(&ImportOptions {
+        strict: true,
+        ..ImportOptions::default()
+    }) {
+        Err(ImportError::Strict { warnings, .. }) => assert_eq!(warnings.len(), 1),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn required_extensions_that_we_lack_are_named() {
+    for extension in [
+        "KHR_draco_mesh_compression",
+        "KHR_materials_pbrSpecularGlossiness",
+        "ACME_x",
+    ] {
+        let mut gltf = Gltf::square();
+        gltf.json["extensionsRequired"] = json!([extension]);
+        gltf.refused(&[extension, "extensionsRequired"]);
+    }
+}
+
+#[test]
+fn missing_and_broken_images_have_stand_ins() {
+    let mut gltf = square_with(json!({
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
+        "normalTexture": { "index": 1 },
+    }));
+    gltf.json["images"] =
+        json!([{ "uri": "missing.png" }, { "uri": "data:image/png;base64,AAAA", "name": "bad" }]);
+    gltf.json["textures"] = json!([{ "source": 0 }, { "source": 1 }]);
+    let scene = gltf.import().unwrap();
+    let texel = |i: usize| match &scene.images[i].texels {
+        Texels::Rgba8(texels) => texels[0],
+        Texels::RgbaF32(_) => panic!("8 bits"),
+    };
+    assert_eq!((texel(0), texel(1)), ([255; 4], [128, 128, 255, 255]));
+    assert!(warns(&scene, "images/0", "missing.png"));
+    assert!(warns(&scene, "images/1 \"bad\"", "unknown format"));
+}
+
+#[test]
+fn enormous_images_are_not_decoded() {
+    // A PNG header of 2³¹ − 1 squared texels, which a decoder would try to allocate.
+    let mut header =
+        b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\x7f\xff\xff\xff\x7f\xff\xff\xff\x08\x06\0\0\0".to_vec();
+    header.extend([0; 64]);
+    let mut gltf =
+        square_with(json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }));
+    let view = gltf.view(&header);
+    gltf.json["images"] = json!([{ "bufferView": view }]);
+    let scene = gltf.import().unwrap();
+    assert_eq!((scene.images[0].width, scene.images[0].height), (1, 1));
+    assert!(warns(&scene, "images/0", "image"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn numbers_out_of_range_are_clamped_with_a_warning() {
+    let scene = square_with(json!({
+        "pbrMetallicRoughness": { "metallicFactor": 2, "roughnessFactor": -1 },
+        "emissiveFactor": [-1, 0, 0],
+        "extensions": { "KHR_materials_ior": { "ior": 0.5 } },
+    }))
+    .import()
+    .unwrap();
+    let surface = surface(&scene.materials[0]);
+    assert_eq!(
+        (
+            surface.metallic.factor,
+            surface.roughness.factor,
+            surface.ior
+        ),
+        (1.0, 0.0, 1.5)
+    );
+    assert_eq!(scene.materials[0].emission.factor, [0.0; 3]);
+    assert_eq!(scene.warnings.len(), 4, "{:?}", scene.warnings);
+}

@@ -1,0 +1,190 @@
+//! glTF lights, cameras and nodes, feature by feature.
+
+use std::f32::consts::FRAC_PI_4;
+
+use common::gltf_text::{F32, Gltf, U8, f32_bytes, warns};
+use glam::{Vec3, Vec3A};
+use residual_scenegen::desc::{LightKind, Projection};
+use serde_json::{Value, json};
+
+mod common;
+
+#[test]
+fn lights_stand_in_the_world() {
+    let mut gltf = Gltf::square();
+    gltf.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [
+        { "type": "point", "color": [1, 0.5, 0], "intensity": 10 },
+        { "type": "spot", "spot": { "innerConeAngle": 0.2, "outerConeAngle": 0.1 } },
+        { "type": "directional", "intensity": -1 },
+    ] } });
+    let light = |i: usize| json!({ "KHR_lights_punctual": { "light": i } });
+    gltf.json["nodes"] = json!([
+        { "children": [1, 2, 3], "translation": [1, 2, 3], "scale": [2, 2, 2] },
+        { "extensions": light(0), "translation": [1, 0, 0] },
+        // Turned about +Y by 90°: −Z becomes −X.
+        { "extensions": light(1), "rotation": [0, 0.707_106_77, 0, 0.707_106_77] },
+        { "extensions": light(2), "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1] },
+    ]);
+    let scene = gltf.import().unwrap();
+    assert_eq!(
+        scene.lights[0].kind,
+        LightKind::Point {
+            position: Vec3::new(3., 2., 3.)
+        }
+    );
+    assert_eq!(scene.lights[0].intensity, [10., 5., 0.]);
+    let LightKind::Spot {
+        position,
+        direction,
+        inner,
+        outer,
+    } = scene.lights[1].kind
+    else {
+        panic!("spot")
+    };
+    assert_eq!(position, Vec3::new(1., 2., 3.));
+    assert!((direction + Vec3::X).length() < 1e-6);
+    assert!(inner < outer && outer == 0.1);
+    assert!(warns(&scene, "lights/1", "innerConeAngle"));
+    assert_eq!(
+        scene.lights[2].kind,
+        LightKind::Directional { direction: Vec3::Z }
+    );
+    assert_eq!(scene.lights[2].intensity, [0.0; 3]);
+    assert!(warns(&scene, "lights/2", "negative"));
+}
+
+#[test]
+fn cameras_forget_scale_and_impossible_lenses() {
+    let mut gltf = Gltf::square();
+    gltf.json["cameras"] = json!([
+        { "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 } },
+        { "type": "orthographic", "orthographic": { "xmag": 1, "ymag": 2, "znear": 0, "zfar": 1 } },
+        { "type": "perspective", "perspective": { "yfov": 4, "znear": 0.1 } },
+    ]);
+    gltf.json["nodes"] = json!([
+        { "camera": 0, "name": "eye", "translation": [0, 0, 5], "scale": [3, 1, 2] },
+        { "camera": 1, "rotation": [0, 1, 0, 0] },
+        { "camera": 2 },
+        { "camera": 0, "scale": [0, 0, 0] },
+    ]);
+    gltf.json["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
+    let scene = gltf.import().unwrap();
+    assert_eq!(scene.cameras.len(), 3);
+    assert_eq!(
+        (scene.cameras[0].name.as_str(), scene.cameras[0].position),
+        ("eye", Vec3::new(0., 0., 5.))
+    );
+    assert_eq!(
+        scene.cameras[0].projection,
+        Projection::Perspective { yfov: 0.5 }
+    );
+    assert!((scene.cameras[0].rotation * Vec3::NEG_Z - Vec3::NEG_Z).length() < 1e-6);
+    assert_eq!(
+        scene.cameras[1].projection,
+        Projection::Orthographic { ymag: 2.0 }
+    );
+    assert!((scene.cameras[1].rotation * Vec3::NEG_Z - Vec3::Z).length() < 1e-6);
+    assert_eq!(
+        scene.cameras[2].projection,
+        Projection::Perspective { yfov: FRAC_PI_4 }
+    );
+    assert!(warns(&scene, "cameras/2", "yfov"));
+    assert!(warns(&scene, "nodes/3", "orientation"));
+}
+
+#[test]
+fn chains_of_a_thousand_nodes_compose_exactly_and_cycles_are_refused() {
+    let mut gltf = Gltf::square();
+    let mut nodes: Vec<Value> = (1..5000)
+        .map(|child| json!({ "children": [child], "translation": [0.1, 0, 0] }))
+        .collect();
+    nodes.push(json!({ "mesh": 0 }));
+    gltf.json["nodes"] = json!(nodes);
+    let scene = gltf.import().unwrap();
+    let expected = (0.1_f32 as f64 * 4999.0) as f32;
+    assert_eq!(
+        scene.instances[0].transform.translation,
+        Vec3A::new(expected, 0., 0.)
+    );
+
+    gltf.json["nodes"] = json!([{ "children": [1] }, { "children": [0], "name": "loop" }]);
+    gltf.refused(&["nodes/0", "reached twice"]);
+    gltf.json["nodes"] =
+        json!([{ "children": [1, 2] }, { "children": [3] }, { "children": [3] }, { "mesh": 0 }]);
+    gltf.refused(&["nodes/3", "reached twice"]);
+}
+
+#[test]
+fn mirrored_transforms_stay_and_collapsed_ones_go() {
+    let mut gltf = Gltf::square();
+    gltf.indices(U8, &[0, 1, 2], 3);
+    gltf.json["nodes"] = json!([
+        { "mesh": 0, "scale": [-1, 1, 1] },
+        { "mesh": 0, "scale": [1, 1, 0] },
+        { "mesh": 0, "scale": [1, 0, 1] },
+        { "mesh": 0, "scale": [1e38, 1e38, 1e38], "children": [4] },
+        { "mesh": 0, "scale": [1e38, 1e38, 1e38] },
+    ]);
+    gltf.json["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
+    let scene = gltf.import().unwrap();
+    assert_eq!(scene.instances.len(), 3, "{:?}", scene.warnings);
+    assert!(scene.instances[0].transform.matrix3.determinant() < 0.0);
+    assert!(warns(&scene, "nodes/1", "flat"));
+    assert!(warns(&scene, "nodes/2", "no area"));
+    assert!(warns(&scene, "nodes/4", "not finite"));
+}
+
+#[test]
+fn gpu_instances_are_placed_one_by_one() {
+    let mut gltf = Gltf::square();
+    gltf.indices(U8, &[0, 1, 2], 3);
+    let translations = gltf.accessor("VEC3", F32, &f32_bytes(&[1., 0., 0., 0., 2., 0.]), 2);
+    let scales = gltf.accessor("VEC3", F32, &f32_bytes(&[1., 1., 1., 3., 3., 3.]), 2);
+    gltf.json["nodes"] = json!([{ "mesh": 0, "translation": [10, 0, 0], "extensions": {
+        "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": translations, "SCALE": scales } },
+    } }]);
+    let scene = gltf.import().unwrap();
+    assert_eq!(scene.instances.len(), 2);
+    assert_eq!(
+        scene.instances[0].transform.translation,
+        Vec3A::new(11., 0., 0.)
+    );
+    assert_eq!(
+        scene.instances[1].transform.transform_point3(Vec3::ONE),
+        Vec3::new(13., 5., 3.)
+    );
+}
+
+#[test]
+fn without_a_scene_all_roots_are_shown() {
+    let mut gltf = Gltf::square();
+    gltf.json["nodes"] = json!([{ "mesh": 0, "children": [2] }, { "mesh": 0 }, { "mesh": 0 }]);
+    gltf.json
+        .as_object_mut()
+        .unwrap()
+        .retain(|key, _| !key.starts_with("scene"));
+    assert_eq!(gltf.import().unwrap().instances.len(), 3);
+}
+
+#[test]
+fn products_of_primitives_and_nodes_are_bounded() {
+    let mut gltf = Gltf::square();
+    gltf.indices(U8, &[0, 1, 2], 3);
+    let primitive = gltf.primitive().clone();
+    gltf.json["meshes"][0]["primitives"] = json!(vec![primitive; 4000]);
+    gltf.json["nodes"] = json!(vec![json!({ "mesh": 0 }); 4000]);
+    gltf.json["scenes"][0]["nodes"] = json!((0..4000).collect::<Vec<_>>());
+    gltf.refused(&["nodes/", "1 GiB"]);
+}
+
+#[test]
+fn floods_of_warnings_are_cut() {
+    let mut gltf = Gltf::square();
+    let node = json!({ "extensions": { "ACME_x": {} } });
+    gltf.json["nodes"] = json!(vec![node; 5000]);
+    gltf.json["scenes"][0]["nodes"] = json!((0..5000).collect::<Vec<_>>());
+    let scene = gltf.import().unwrap();
+    assert_eq!(scene.warnings.len(), 1001);
+    assert!(warns(&scene, "warnings", "more warnings"));
+}

@@ -1,0 +1,263 @@
+//! Arguments.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use residual_device_cpu::LaneCount;
+
+/// Generates a renderer for a scene, and renders it.
+#[derive(Parser)]
+#[command(name = "cargo xtask", version, arg_required_else_help = true)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene to an image
+    Render(RenderArgs),
+    /// Show what a scene calls for, and the programs made for it
+    Inspect(InspectArgs),
+    /// Print the renderer that is generated for a scene
+    Emit(EmitArgs),
+}
+
+/// Which scene, and how it is read.
+#[derive(Args, Clone)]
+pub(crate) struct SceneArgs {
+    /// glTF (.gltf, .glb) or OBJ file
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: PathBuf,
+    /// Environment image (.hdr, .exr, .png), latitude-longitude
+    #[arg(long, value_name = "FILE")]
+    pub(crate) env: Option<PathBuf>,
+    /// Factor on the environment's radiance
+    #[arg(long, value_name = "X", default_value_t = 1.0, requires = "env", value_parser = non_negative)]
+    pub(crate) env_strength: f32,
+    /// Turn of the environment about +Y
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "env", allow_negative_numbers = true, value_parser = finite)]
+    pub(crate) env_rotate: f32,
+    /// Fail where the scene cannot be rendered faithfully, instead of warning
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// The scene's camera of this name or number
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with_all = ["eye", "dir", "up", "fov"])]
+    pub(crate) camera: Option<String>,
+    /// Place of the eye
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) eye: Option<Triple>,
+    /// Direction of view
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) dir: Option<Triple>,
+    /// Which way is up in the image
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) up: Option<Triple>,
+    /// Vertical field of view
+    #[arg(long, value_name = "DEGREES", value_parser = field_of_view)]
+    pub(crate) fov: Option<f32>,
+    /// Width and height of the image in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x480")]
+    pub(crate) size: Size,
+    /// Which surfaces are seen from behind
+    #[arg(long, value_enum, default_value_t = CullingArg::Gltf)]
+    pub(crate) culling: CullingArg,
+    /// Where random numbers come from
+    #[arg(long, value_enum, default_value_t = SamplerArg::Sobol)]
+    pub(crate) sampler: SamplerArg,
+    /// When a material's numbers are known to the compiler
+    #[arg(long, value_enum, default_value_t = SpecializeArg::Structure)]
+    pub(crate) specialize: SpecializeArg,
+}
+
+#[derive(Args)]
+pub(crate) struct RenderArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Image file (.png, .exr); may be given more than once
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Vec<PathBuf>,
+    /// Samples per pixel [default: 64, or as many as --time allows]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) spp: Option<u32>,
+    /// Stop after this time (30s, 2m, 500ms)
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    pub(crate) time: Option<Duration>,
+    /// Most vertices of a path: 1 is emission seen directly, 2 adds direct light
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) max_depth: u32,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u32,
+    /// Threads; 0 is one for each processor
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) threads: usize,
+    /// How the renderer is made from the scene
+    #[arg(long, value_enum, default_value_t = TierArg::Auto)]
+    pub(crate) tier: TierArg,
+    /// Paths shaded at once: 1, 4, 8 or 16; the image does not depend on it [default: what suits the machine]
+    #[arg(long, value_name = "N")]
+    pub(crate) lanes: Option<LaneCount>,
+    /// Statistics on standard output
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) stats: Option<StatsArg>,
+    /// No progress and no summary
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct InspectArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// One JSON object on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct EmitArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Language
+    #[arg(long, value_enum)]
+    pub(crate) target: TargetArg,
+    /// Directory for the file; without it, standard output
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// Paths shaded at once: 1, 4, 8 or 16 [default: what suits the machine]
+    #[arg(long, value_name = "N")]
+    pub(crate) lanes: Option<LaneCount>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CullingArg {
+    /// Single-sided surfaces are seen, block and emit from their front only
+    Gltf,
+    /// Both sides of every surface block light
+    None,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SamplerArg {
+    /// Owen-scrambled Sobol points
+    Sobol,
+    /// Independent random numbers
+    Independent,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SpecializeArg {
+    /// 0 and 1 are constants, other numbers parameters
+    Structure,
+    /// All numbers are constants
+    Constants,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TierArg {
+    /// Start interpreted, swap to the compiled renderer when it is ready
+    Auto,
+    /// Without a compiler
+    Interpreted,
+    /// Compiled before the first ray
+    Specialized,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StatsArg {
+    /// For people
+    Text,
+    /// One JSON object as the last line
+    Json,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TargetArg {
+    /// A module for the CPU device
+    Rust,
+    /// Functions for a GPU device
+    Wgsl,
+}
+
+/// Three numbers with commas between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Triple(pub(crate) [f32; 3]);
+
+impl FromStr for Triple {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f32> = text.split(',').map(|part| finite(part.trim())).collect::<Result<_, _>>()?;
+        let three = <[f32; 3]>::try_from(numbers);
+        three.map(Self).map_err(|_| "expected three numbers, as in 1,0.5,-2".to_owned())
+    }
+}
+
+/// Width and height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size(pub(crate) [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let error = || "expected width and height from 1 to 65536, as in 1280x720".to_owned();
+        let (width, height) = text.split_once(['x', 'X']).ok_or_else(error)?;
+        let parse = |part: &str| part.trim().parse::<u32>().ok().filter(|n| (1..=65536).contains(n));
+        Ok(Self([parse(width).ok_or_else(error)?, parse(height).ok_or_else(error)?]))
+    }
+}
+
+fn finite(text: &str) -> Result<f32, String> {
+    let number: f32 = text.parse().map_err(|_| format!("{text:?} is not a number"))?;
+    if number.is_finite() { Ok(number) } else { Err("expected a finite number".to_owned()) }
+}
+
+fn non_negative(text: &str) -> Result<f32, String> {
+    let number = finite(text)?;
+    if number >= 0.0 { Ok(number) } else { Err("expected a number that is not negative".to_owned()) }
+}
+
+fn field_of_view(text: &str) -> Result<f32, String> {
+    let degrees = finite(text)?;
+    let fits = degrees > 0.0 && degrees < 180.0;
+    if fits { Ok(degrees) } else { Err("expected an angle between 0 and 180 degrees".to_owned()) }
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0), ("", 1.0)];
+    let (number, scale) = units
+        .iter()
+        .find_map(|(unit, scale)| Some((text.strip_suffix(unit)?.parse::<f64>().ok()?, scale)))
+        .ok_or_else(|| "expected a time, as in 30s, 2m or 500ms".to_owned())?;
+    let seconds = number * scale;
+    if seconds > 0.0 && seconds < 1e9 {
+        Ok(Duration::from_secs_f64(seconds))
+    } else {
+        Err("expected a time above 0".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_are_consistent() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn values_parse() {
+        assert_eq!("640x480".parse(), Ok(Size([640, 480])));
+        assert!("0x480".parse::<Size>().is_err() && "640".parse::<Size>().is_err());
+        assert_eq!("1,-2.5, 3".parse(), Ok(Triple([1.0, -2.5, 3.0])));
+        assert!("1,2".parse::<Triple>().is_err() && "1,2,nan".parse::<Triple>().is_err());
+        assert_eq!(duration("500ms"), Ok(Duration::from_millis(500)));
+        assert_eq!(duration("2m"), Ok(Duration::from_secs(120)));
+        assert!(duration("-1s").is_err() && duration("soon").is_err());
+        assert!(field_of_view("180").is_err());
+    }
+}

@@ -1,0 +1,30 @@
+//! `cargo xtask emit`: the generated renderer as text.
+
+use std::fs;
+
+use anyhow::{Context, Result};
+use residual_device_cpu::LaneCount;
+use residual_scenegen::emit::rust;
+
+use crate::args::{EmitArgs, TargetArg};
+use crate::{compile, scene};
+
+pub(crate) fn run(args: &EmitArgs) -> Result<()> {
+    let (plan, _) = scene::load(&args.scene)?;
+    let lanes = args.lanes.unwrap_or_else(LaneCount::native);
+    let (text, extension) = match args.target {
+        TargetArg::Rust => (rust::module(&plan, &compile::lanes_name(lanes)), "rs"),
+        TargetArg::Wgsl => anyhow::bail!("not yet"),
+    };
+    match &args.output {
+        None => print!("{text}"),
+        Some(directory) => {
+            fs::create_dir_all(directory)
+                .with_context(|| format!("creating {}", directory.display()))?;
+            let path = directory.join(&plan.name).with_extension(extension);
+            crate::output::write_atomically(&path, text.as_bytes())?;
+            eprintln!("{}", path.display());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,150 @@
+//! Image files. A file is written beside its place, synced, and renamed: there is never half an image.
+
+
+use std::io::{Cursor, Write as _};
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use exr::prelude::*;
+use residual_render::film::Film;
+
+/// What is written beside the pixels.
+pub(crate) struct Metadata {
+    pub(crate) scene: String,
+    pub(crate) samples: u64,
+    pub(crate) seconds: f64,
+    pub(crate) relmse: Option<f64>,
+}
+
+/// Refuses file names that [`write`] would refuse, before any work is done.
+pub(crate) fn check(path: &Path) -> Result<()> {
+    match extension(path).as_str() {
+        "png" | "exr" => {}
+        _ => bail!("{}: images are written as .png or .exr", path.display()),
+    }
+    let directory = directory(path);
+    if !directory.is_dir() {
+        bail!("{}: the directory {} does not exist", path.display(), directory.display());
+    }
+    Ok(())
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
+fn directory(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Writes the film as a PNG (sRGB) or an EXR (linear).
+pub(crate) fn write(path: &Path, film: &Film, metadata: &Metadata) -> Result<()> {
+    let bytes = match extension(path).as_str() {
+        "png" => png(film)?,
+        _ => open_exr(film, metadata)?,
+    };
+    write_atomically(path, &bytes)
+}
+
+/// Writes a file by way of a temporary one beside it.
+pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+    let write = || -> std::io::Result<()> {
+        let mut file = tempfile::NamedTempFile::new_in(directory(path))?;
+        file.write_all(bytes)?;
+        file.as_file().sync_all()?;
+        // Temporary files are private; an image is as readable as any new file.
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            file.as_file().set_permissions(std::fs::Permissions::from_mode(0o644))?;
+        }
+        file.persist(path)?;
+        Ok(())
+    };
+    write().with_context(|| format!("writing {}", path.display()))
+}
+
+/// The code of a linear value in sRGB (IEC 61966-2-1).
+fn encode_srgb(linear: f32) -> u8 {
+    let c = f64::from(linear).clamp(0.0, 1.0);
+    let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    (encoded * 255.0).round() as u8
+}
+
+fn png(film: &Film) -> Result<Vec<u8>> {
+    let pixels = film.image().into_iter().flat_map(|rgb| rgb.map(encode_srgb)).collect();
+    let image = image::RgbImage::from_raw(film.width(), film.height(), pixels)
+        .expect("the film has as many pixels as its size says");
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Png)?;
+    Ok(bytes.into_inner())
+}
+
+fn open_exr(film: &Film, metadata: &Metadata) -> Result<Vec<u8>> {
+    let pixels = film.image();
+    let width = film.width() as usize;
+    let size = (width, film.height() as usize);
+    let channels = SpecificChannels::rgb(|place: Vec2<usize>| {
+        let [r, g, b] = pixels[place.y() * width + place.x()];
+        (r, g, b)
+    });
+    let mut attributes = LayerAttributes::named("");
+    attributes.software_name = Text::new_or_none(concat!("Residual ", env!("CARGO_PKG_VERSION")));
+    let mut comment = format!(
+        "scene={} spp={} seconds={:.3}",
+        metadata.scene, metadata.samples, metadata.seconds
+    );
+    if let Some(relmse) = metadata.relmse {
+        comment.push_str(&format!(" relmse={relmse:.3e}"));
+    }
+    attributes.comments = Text::new_or_none(&comment);
+    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+/// For tests of what was written.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn film() -> Film {
+        let mut film = Film::new(3, 2, 64);
+        film.tiles_mut()[0].add(&(0..18).map(|i| i as f32 / 17.0).collect::<Vec<_>>());
+        film
+    }
+
+    #[test]
+    fn files_read_back() {
+        let directory = tempfile::tempdir().unwrap();
+        let metadata = Metadata { scene: "s".into(), samples: 1, seconds: 1.0, relmse: None };
+        let png = directory.path().join("a.png");
+        write(&png, &film(), &metadata).unwrap();
+        let read = image::open(&png).unwrap().to_rgb8();
+        assert_eq!((read.dimensions(), read.get_pixel(2, 1).0), ((3, 2), [248, 252, 255]));
+        let exr = directory.path().join("a.exr");
+        write(&exr, &film(), &metadata).unwrap();
+        let read = image_from_exr(&exr);
+        assert_eq!(read, film().image());
+    }
+
+    fn image_from_exr(path: &Path) -> Vec<[f32; 3]> {
+        let image = read_first_rgba_layer_from_file(
+            path,
+            |size, _| vec![[0.0; 3]; size.area()].into_boxed_slice().into_vec(),
+            |pixels: &mut Vec<[f32; 3]>, at, (r, g, b, _): (f32, f32, f32, f32)| {
+                pixels[at.y() * 3 + at.x()] = [r, g, b];
+            },
+        );
+        image.unwrap().layer_data.channel_data.pixels
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("missing/a.png");
+        assert!(check(&path).is_err() && write_atomically(&path, b"x").is_err());
+        assert!(check(&directory.path().join("a.jpg")).is_err());
+    }
+}

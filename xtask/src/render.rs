@@ -1,0 +1,189 @@
+//! `cargo xtask render`.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+use residual_bvh::BuildQuality;
+use residual_device_cpu::lanes::OwnedBvh;
+use residual_device_cpu::plugin::LoadedRenderer;
+use residual_device_cpu::{CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer};
+use residual_render::film::Film;
+use residual_scenegen::plan::Plan;
+
+use crate::args::{RenderArgs, StatsArg, TierArg};
+use crate::output::{self, Metadata};
+use crate::stats::{Stages, Statistics};
+use crate::{compile, scene};
+
+const DEFAULT_SAMPLES: u32 = 64;
+
+pub(crate) fn run(args: &RenderArgs) -> Result<()> {
+    let start = Instant::now();
+    let outputs = outputs(args)?;
+    let (plan, load) = scene::load(&args.scene)?;
+    let lanes = args.lanes.unwrap_or_else(LaneCount::native);
+    let device = CpuDevice::new(args.threads).context("starting threads")?;
+    let options = RenderOptions {
+        size: args.scene.size.0,
+        samples: args.spp.or(args.time.is_none().then_some(DEFAULT_SAMPLES)),
+        time: args.time,
+        max_depth: args.max_depth,
+        seed: args.seed,
+        threads: args.threads,
+    };
+    let bar = progress_bar(args, &options);
+
+    let interpreter = Interpreter::new(plan.structure.clone(), lanes);
+    let compiled = OnceLock::new();
+    let compiled_from = AtomicU32::new(u32::MAX);
+    let samples_done = AtomicU32::new(0);
+    let mut bvh_time = Duration::ZERO;
+    let mut done = None;
+    std::thread::scope(|scope| {
+        // Compilation runs beside the building of the hierarchy and, with `auto`, beside rendering.
+        let compilation = (args.tier != TierArg::Interpreted)
+            .then(|| scope.spawn(|| compiled.get_or_init(|| Compilation::run(&plan, lanes))));
+        let bvh_start = Instant::now();
+        let bvh = OwnedBvh::build(&plan.data, lanes, BuildQuality::Best);
+        bvh_time = bvh_start.elapsed();
+        if args.tier == TierArg::Specialized
+            && let Some(compilation) = compilation
+        {
+            compilation.join().expect("compilation does not panic");
+            if let Some(Compilation { result: Err(error), .. }) = compiled.get() {
+                bail!("{error:#}\n--tier interpreted renders without a compiler");
+            }
+        }
+        let view = SceneView { buffers: plan.data.buffers(), bvh: bvh.view() };
+        let choose = || -> &dyn TileRenderer {
+            match compiled.get() {
+                Some(Compilation { result: Ok(renderer), .. }) => {
+                    let samples = samples_done.load(Ordering::Relaxed);
+                    compiled_from.fetch_min(samples, Ordering::Relaxed);
+                    renderer
+                }
+                _ => &interpreter,
+            }
+        };
+        let show = |progress: residual_device_cpu::Progress| {
+            samples_done.store(progress.samples, Ordering::Relaxed);
+            match options.samples {
+                Some(_) => bar.set_position(u64::from(progress.samples)),
+                None => bar.set_position(progress.elapsed.as_millis() as u64),
+            }
+            bar.set_message(format!("{} spp", progress.samples));
+        };
+        done = Some(device.render(choose, &view, &options, show));
+        bar.finish_and_clear();
+        // The image is ready: it is written before the compiler, if it still runs, is waited for.
+        let (film, report) = done.as_ref().expect("just rendered");
+        let metadata = Metadata {
+            scene: plan.name.clone(),
+            samples: film.samples(),
+            seconds: report.elapsed.as_secs_f64(),
+            relmse: film.error().map(|error| error.relmse),
+        };
+        outputs.iter().try_for_each(|path| output::write(path, film, &metadata))
+    })?;
+    let (film, report) = done.expect("rendered");
+
+    let (tier, compile_time) = match compiled.get() {
+        Some(Compilation { result: Ok(_), time }) => {
+            let used = compiled_from.load(Ordering::Relaxed) != u32::MAX;
+            (if used { "specialized" } else { "interpreted" }, *time)
+        }
+        Some(Compilation { result: Err(error), time }) => {
+            eprintln!("warning: the renderer could not be compiled; it was interpreted instead: {error:#}");
+            ("interpreted", *time)
+        }
+        None => ("interpreted", Duration::ZERO),
+    };
+    let from = compiled_from.load(Ordering::Relaxed);
+    let statistics = Statistics {
+        plan: &plan,
+        film: &film,
+        report: &report,
+        stages: Stages { load, bvh: bvh_time, compile: compile_time, total: start.elapsed() },
+        tier,
+        lanes: lanes.count(),
+        compiled_from: (from != u32::MAX).then_some(from),
+    };
+    if !args.quiet {
+        summary(&film, &report.elapsed, &outputs, args, statistics.compiled_from);
+    }
+    match args.stats {
+        Some(StatsArg::Json) => println!("{}", statistics.json()),
+        Some(StatsArg::Text) => print!("{}", statistics.text()),
+        None => {}
+    }
+    Ok(())
+}
+
+/// A compiled renderer, or why there is none, and how long that took.
+struct Compilation {
+    result: Result<LoadedRenderer>,
+    time: Duration,
+}
+
+impl Compilation {
+    fn run(plan: &Plan, lanes: LaneCount) -> Self {
+        let start = Instant::now();
+        let result = compile::compile(plan, lanes);
+        Self { result, time: start.elapsed() }
+    }
+}
+
+/// The files to be written, checked.
+fn outputs(args: &RenderArgs) -> Result<Vec<PathBuf>> {
+    let outputs = if args.output.is_empty() {
+        let stem = args.scene.scene.file_stem().unwrap_or_default();
+        vec![PathBuf::from(stem).with_extension("png")]
+    } else {
+        args.output.clone()
+    };
+    outputs.iter().try_for_each(|path| output::check(path))?;
+    Ok(outputs)
+}
+
+fn progress_bar(args: &RenderArgs, options: &RenderOptions) -> ProgressBar {
+    if args.quiet {
+        return ProgressBar::hidden();
+    }
+    // By samples where their number is known, else by milliseconds of the time limit.
+    let length = match (options.samples, options.time) {
+        (Some(samples), _) => u64::from(samples),
+        (None, Some(time)) => time.as_millis() as u64,
+        (None, None) => 0,
+    };
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {elapsed} gone, {eta} left");
+    ProgressBar::new(length).with_style(style.expect("the template is valid"))
+}
+
+fn summary(film: &Film, elapsed: &Duration, outputs: &[PathBuf], args: &RenderArgs, from: Option<u32>) {
+    let files: Vec<_> = outputs.iter().map(|path| path.display().to_string()).collect();
+    let seconds = elapsed.as_secs_f64();
+    eprintln!("{}: {} samples per pixel in {seconds:.2} s", files.join(", "), film.samples());
+    if let Some(error) = film.error() {
+        // Relative RMS error; it halves in four times the time.
+        let (error, ci) = (error.relmse, error.ci95);
+        eprintln!(
+            "relative mean squared error {error:.2e} ± {ci:.1e}; a quarter of it: 4.0× the time, {:.0} s",
+            4.0 * seconds
+        );
+    }
+    if args.tier == TierArg::Auto
+        && let Some(samples) = from
+    {
+        eprintln!("compiled renderer used after {samples} samples per pixel");
+    }
+    if film.invalid_samples() > 0 {
+        eprintln!(
+            "warning: {} samples were not finite and counted as black; please report this",
+            film.invalid_samples()
+        );
+    }
+}

@@ -1,0 +1,56 @@
+//! From arguments to a plan.
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail};
+use residual_render::sampler::AnySampler;
+use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
+use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, View, plan};
+
+use crate::args::{CullingArg, SamplerArg, SceneArgs, SpecializeArg};
+
+/// Reads and plans the scene; warnings go to standard error.
+pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
+    let start = Instant::now();
+    let environment = args.env.as_ref().map(|path| EnvironmentOptions {
+        path: path.clone(),
+        strength: args.env_strength,
+        rotation_degrees: args.env_rotate,
+    });
+    let scene = import(&args.scene, &ImportOptions { environment, strict: args.strict })?;
+    let view = View {
+        eye: args.eye.map(|v| v.0),
+        dir: args.dir.map(|v| v.0),
+        up: args.up.map(|v| v.0),
+        fov: args.fov,
+    };
+    let camera = match &args.camera {
+        Some(name) => CameraChoice::Named(name.clone()),
+        None if view == View::default() => CameraChoice::Default,
+        None => CameraChoice::View(view),
+    };
+    let options = PlanOptions {
+        binding: match args.specialize {
+            SpecializeArg::Structure => Binding::Structure,
+            SpecializeArg::Constants => Binding::Constants,
+        },
+        camera,
+        size: args.size.0,
+        culling: match args.culling {
+            CullingArg::Gltf => CullingRule::Gltf,
+            CullingArg::None => CullingRule::None,
+        },
+        sampler: match args.sampler {
+            SamplerArg::Sobol => AnySampler::Sobol,
+            SamplerArg::Independent => AnySampler::Independent,
+        },
+    };
+    let plan = plan(&scene, &options).with_context(|| args.scene.display().to_string())?;
+    for warning in scene.warnings.iter().chain(&plan.warnings) {
+        eprintln!("warning: {}: {}: {}", args.scene.display(), warning.place, warning.message);
+    }
+    if args.strict && plan.warnings.iter().any(|warning| warning.place.starts_with("material")) {
+        bail!("{}: --strict: the warnings above say what is not rendered faithfully", args.scene.display());
+    }
+    Ok((plan, start.elapsed()))
+}
