@@ -62,7 +62,7 @@ impl<F: crate::domain::Real> Blend<F> {
         let probability = d.max(d.select(second, p, one - p), tiny);
         // The part of the interval that was chosen becomes the whole interval of the next choice.
         let rest = d.select(second, u[2], u[2] - p) / probability;
-        let u = [u[0], u[1], d.min(rest, d.lit(1.0 - 0.5 / 16_777_216.0))];
+        let u = [u[0], u[1], d.min(rest, d.lit(1.0 - 1.0 / 16_777_216.0))];
         let chosen = d.branch(second, || b.sample(d, surface, wo, u), || a.sample(d, surface, wo, u));
         let factor = d.select(second, self.factor_b, self.factor_a);
         let alone = chosen.weight.scale(factor / probability);

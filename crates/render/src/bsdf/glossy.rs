@@ -1,7 +1,10 @@
 //! A dielectric coat over a diffuse base: glTF's dielectric, `fresnel_mix(diffuse, specular)` (glTF 2.0,
-//! appendix B.3.5, with KHR_materials_specular and KHR_materials_ior).
+//! appendix B.3.5, with KHR_materials_specular and KHR_materials_ior), except for the base's share. glTF's
+//! 1 − F(wo·h) lets white surfaces return up to twice the light that grazes them; here light loses the coat's
+//! Fresnel factor on its way in and on its way out (Ashikhmin, Premože and Shirley 2000), which is reciprocal, and
+//! white under a smooth coat returns 1 (hard case M-04).
 
-use super::microfacet::{Ggx, reflect, schlick_weight};
+use super::microfacet::{Ggx, half_cosine, reflect, schlick_weight};
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::Domain;
 use crate::math::warp::{FRAC_1_PI, cosine_hemisphere, cosine_hemisphere_pdf};
@@ -36,6 +39,19 @@ impl<D: Domain> Coat<D> {
         self.reflectance.lerp(Vec3::splat(self.grazing), schlick_weight(d, cos))
     }
 
+    /// What the coat lets through, entering or leaving at this cosine.
+    #[inline(always)]
+    fn through(&self, d: D, cos: D::F) -> D::F {
+        d.lit(1.0) - self.fresnel(d, cos).max_component(d)
+    }
+
+    /// Its mean over the hemisphere, weighed by the cosine: that of Schlick's weight is 1/21.
+    #[inline(always)]
+    fn through_mean(&self, d: D) -> D::F {
+        let normal = self.reflectance.max_component(d);
+        d.lit(1.0) - d.fma(self.grazing - normal, d.lit(1.0 / 21.0), normal)
+    }
+
     /// The probability of sampling the coat: its share of the albedo seen from `wo`, at least a tenth, so that
     /// highlights of dark-seeming coats are found.
     #[inline(always)]
@@ -47,11 +63,13 @@ impl<D: Domain> Coat<D> {
 
     #[inline(always)]
     fn eval(&self, d: D, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D> {
-        let h = (wo + wi).normalize_any(d);
-        let fresnel = self.fresnel(d, d.abs(wo.dot(d, h)));
+        let sum = wo + wi;
+        let h = sum.normalize_any(d);
+        let fresnel = self.fresnel(d, half_cosine(d, sum, h));
         let (coat, coat_pdf) = self.ggx.reflection(d, wo, wi, h);
         let cos = d.max(wi.z, d.lit(0.0));
-        let base = (d.lit(1.0) - fresnel.max_component(d)) * cos * d.lit(FRAC_1_PI);
+        let base = self.through(d, wo.z) * self.through(d, cos) / d.max(self.through_mean(d), d.lit(1e-6));
+        let base = base * cos * d.lit(FRAC_1_PI);
         let p = self.coat_probability(d, wo);
         BsdfValue {
             value: fresnel.scale(coat) + self.albedo.scale(base),

@@ -96,6 +96,13 @@ pub fn reflect<D: Domain>(d: D, v: Vec3<D::F>, h: Vec3<D::F>) -> Vec3<D::F> {
     h.scale(d.lit(2.0) * v.dot(d, h)) - v
 }
 
+/// Cosine between either of two directions and their half vector `h`; `sum` is theirs. The same for both to the
+/// last bit, which their scalar products with `h` are not at grazing angles (hard case M-05).
+#[inline(always)]
+pub fn half_cosine<D: Domain>(d: D, sum: Vec3<D::F>, h: Vec3<D::F>) -> D::F {
+    d.lit(0.5) * sum.dot(d, h)
+}
+
 /// (1 − cos)⁵, Schlick's weight.
 #[inline(always)]
 pub fn schlick_weight<D: Domain>(d: D, cos: D::F) -> D::F {
@@ -122,9 +129,11 @@ impl<D: Domain, C: ColorSource<D>, R: ScalarSource<D>> Bsdf<D> for Conductor<C, 
     #[inline(always)]
     fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D> {
         let ggx = Ggx::from_roughness(d, self.roughness.scalar(d, surface));
-        let h = (wo + wi).normalize_any(d);
+        let sum = wo + wi;
+        let h = sum.normalize_any(d);
         let (value, pdf) = ggx.reflection(d, wo, wi, h);
-        let fresnel = conductor_fresnel(d, self.color.color(d, surface), d.abs(wo.dot(d, h)));
+        let cos = half_cosine(d, sum, h);
+        let fresnel = conductor_fresnel(d, self.color.color(d, surface), cos);
         BsdfValue { value: fresnel.scale(value), pdf }
     }
 

@@ -1,0 +1,297 @@
+//! What no BSDF may do: give out more than comes in (hard case M-04), depend on the direction of light (M-05), or
+//! be anything but finite (M-15). And what smooth dielectrics do.
+
+use residual_render::bsdf::{
+    Black, Bsdf, BsdfSample, Conductor, Dielectric, Diffuse, Glossy, Mix, Phong, Solid, Sum, Thin,
+};
+use residual_render::domain::{Buffers, Scalar};
+use residual_render::math::Vec3;
+use residual_render::math::vec3::vec3;
+use residual_render::surface::Surface;
+use residual_render::texture::Const;
+
+use crate::support::random::Rng;
+use crate::support::scenes::{FLOOR, floor, scene, surface_at};
+use crate::support::stats::Mean;
+use crate::support::{Worst, array, dot};
+
+type White = Const<[f32; 3]>;
+const WHITE: White = Const([1.0; 3]);
+
+fn glossy(roughness: f32, reflectance: f32) -> Glossy<White, Const<f32>, White, Const<f32>> {
+    Glossy { albedo: WHITE, roughness: Const(roughness), reflectance: Const([reflectance; 3]), grazing: Const(1.0) }
+}
+fn conductor(roughness: f32) -> Conductor<White, Const<f32>> {
+    Conductor { color: WHITE, roughness: Const(roughness) }
+}
+fn phong(exponent: f32) -> Phong<White, Const<f32>> {
+    Phong { color: WHITE, exponent: Const(exponent) }
+}
+
+/// A unit vector above the surface.
+fn view(cos: f64, angle: f64) -> Vec3<f32> {
+    let sin = (1.0 - cos * cos).sqrt();
+    vec3((sin * angle.cos()) as f32, (sin * angle.sin()) as f32, cos as f32)
+}
+
+/// Albedo seen from several directions, by sampling.
+fn albedos<B: for<'a> Bsdf<Scalar<'a>>>(bsdf: &B) -> Vec<(f64, Mean)> {
+    let data = scene(&[FLOOR]);
+    let buffers = data.buffers();
+    let d = Scalar::new(&buffers);
+    let surface = floor(d);
+    let mut rng = Rng::new(90);
+    let seen = |cos| {
+        let mut mean = Mean::default();
+        for _ in 0..20_000 {
+            let weight = array(bsdf.sample(d, &surface, view(cos, 0.7), rng.unit3()).weight);
+            assert!(weight.iter().all(|w| w.is_finite() && *w >= 0.0), "{weight:?}");
+            mean.add(f64::from(weight[0]));
+        }
+        (cos, mean)
+    };
+    [1.0, 0.8, 0.5, 0.2, 0.05, 0.01].map(seen).to_vec()
+}
+
+/// The white furnace: the 99.9 % confidence interval of the albedo is narrow and not wholly above 1. (Its upper
+/// end is above 1 by chance wherever the albedo is exactly 1.)
+#[track_caller]
+fn assert_no_gain<B: for<'a> Bsdf<Scalar<'a>>>(name: &str, bsdf: &B) {
+    for (cos, albedo) in albedos(bsdf) {
+        let lower = albedo.value() - 3.09 * albedo.error();
+        println!("{name}, cos {cos}: albedo {:.4} ± {:.4}", albedo.value(), albedo.error());
+        assert!(lower <= 1.0 + 1e-3, "{name}, cos {cos}: albedo at least {lower}");
+        assert!(albedo.error() < 1e-2, "{name}, cos {cos}: albedo unknown, ± {}", albedo.error());
+    }
+}
+
+const ROUGHNESSES: [f32; 8] = [0.0, 0.01, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
+
+#[test]
+fn furnace_of_metals() {
+    for roughness in ROUGHNESSES {
+        assert_no_gain(&format!("conductor {roughness}"), &conductor(roughness));
+    }
+    // A mirror loses nothing.
+    for (cos, albedo) in albedos(&conductor(0.0)) {
+        assert!((albedo.value() - 1.0).abs() < if cos > 0.04 { 1e-4 } else { 2e-2 }, "{cos}: {}", albedo.value());
+    }
+}
+
+#[test]
+fn furnace_of_coated_surfaces() {
+    for roughness in ROUGHNESSES {
+        for reflectance in [0.0, 0.04, 0.5, 1.0] {
+            assert_no_gain(&format!("glossy {roughness}, F₀ {reflectance}"), &glossy(roughness, reflectance));
+        }
+    }
+}
+
+#[test]
+fn furnace_of_phong() {
+    for exponent in [0.0, 1.0, 5.0, 20.0, 100.0, 500.0, 10_000.0] {
+        assert_no_gain(&format!("phong {exponent}"), &phong(exponent));
+    }
+}
+
+#[test]
+fn furnace_of_combinations() {
+    let base = Diffuse { albedo: WHITE };
+    let half = Diffuse { albedo: Const([0.5; 3]) };
+    let shiny = Phong { color: Const([0.5; 3]), exponent: Const(30.0) };
+    assert_no_gain("mix", &Mix { a: base, b: conductor(0.3), weight: Const(0.4) });
+    assert_no_gain("mix with glass", &Mix { a: base, b: Dielectric::new(WHITE, Const(1.5), Thin), weight: Const(0.4) });
+    assert_no_gain("sum", &Sum { a: half, b: shiny, probability: Const(0.3) });
+    assert_no_gain("ends", &Mix { a: base, b: Mix { a: base, b: phong(9.0), weight: Const(1.0) }, weight: Const(0.0) });
+    // What mixes lose nothing: the estimator's mean does not depend on how lobes are chosen.
+    let glass = Dielectric::new(WHITE, Const(1.5), Thin);
+    for (_, albedo) in albedos(&Mix { a: base, b: glass, weight: Const(0.25) }) {
+        assert!((albedo.value() - 1.0).abs() < 1e-6);
+    }
+    for (_, albedo) in albedos(&Sum { a: half, b: half, probability: Const(0.8) }) {
+        assert!((albedo.value() - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn furnace_finds_a_gain() {
+    let bright = Diffuse { albedo: Const([0.6; 3]) };
+    let sum = Sum { a: bright, b: bright, probability: Const(0.5) };
+    assert!(std::panic::catch_unwind(|| assert_no_gain("too bright", &sum)).is_err());
+}
+
+#[test]
+fn diffuse_returns_exactly_its_albedo() {
+    for (_, albedo) in albedos(&Diffuse { albedo: WHITE }) {
+        assert_eq!((albedo.value(), albedo.error()), (1.0, 0.0));
+    }
+    for (_, albedo) in albedos(&Black) {
+        assert_eq!(albedo.value(), 0.0);
+    }
+}
+
+/// f(wo, wi) = f(wi, wo), relative to their size; values hold a cosine of `wi` that is divided out.
+fn asymmetry<B: for<'a> Bsdf<Scalar<'a>>>(name: &str, bsdf: &B) {
+    let data = scene(&[FLOOR]);
+    let buffers = data.buffers();
+    let d = Scalar::new(&buffers);
+    let surface = floor(d);
+    let mut rng = Rng::new(91);
+    let mut worst = Worst::default();
+    for k in 0..100_000 {
+        let low = if k % 2 == 0 { -4.0 } else { -0.7 };
+        let mut direction = || {
+            let cos = 10.0_f64.powf(rng.range(low, 0.0));
+            view(cos, rng.range(0.0, std::f64::consts::TAU))
+        };
+        let (a, mut b) = (direction(), direction());
+        if k % 3 == 0 {
+            // Near the mirrored direction, where lobes are.
+            b = (vec3(-a.x, -a.y, a.z) + b.scale(0.02)).normalize(d);
+        }
+        let there = f64::from(bsdf.eval(d, &surface, a, b).value.x) / f64::from(b.z);
+        let back = f64::from(bsdf.eval(d, &surface, b, a).value.x) / f64::from(a.z);
+        let size = there.max(back);
+        let error = if size == 0.0 { 0.0 } else { (there - back).abs() / size };
+        worst.add(if size < 1e-30 { 0.0 } else { error }, || format!("{a:?} {b:?}: {there} {back}"));
+    }
+    worst.assert_below(1e-4, &format!("{name}: asymmetry, relative"));
+}
+
+#[test]
+fn reciprocity() {
+    for roughness in [0.05, 0.1, 0.3, 1.0] {
+        let gold = Conductor { color: Const([0.5; 3]), roughness: Const(roughness) };
+        asymmetry(&format!("conductor {roughness}"), &gold);
+        asymmetry(&format!("glossy {roughness}"), &glossy(roughness, 0.04));
+    }
+    for exponent in [1.0, 20.0, 100.0] {
+        asymmetry(&format!("phong {exponent}"), &phong(exponent));
+    }
+    let mix = Mix { a: Diffuse { albedo: WHITE }, b: conductor(0.2), weight: Const(0.4) };
+    asymmetry("mix", &mix);
+    asymmetry("sum", &Sum { a: phong(7.0), b: mix, probability: Const(0.7) });
+}
+
+#[test]
+fn degenerate_directions_give_finite_values() {
+    fn check<B: for<'a> Bsdf<Scalar<'a>>>(name: &str, bsdf: &B) {
+        let data = scene(&[FLOOR]);
+        let buffers = data.buffers();
+        let d = Scalar::new(&buffers);
+        let surface = floor(d);
+        let axis = [0.0, -0.0, 1.0, -1.0, 0.6, 1e-20, 1e-4];
+        let mut directions = vec![vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, -1.0)];
+        directions.extend(axis.map(|z: f32| vec3((1.0 - z * z).sqrt(), 0.0, z)));
+        directions.extend(axis.map(|z: f32| vec3(-(1.0 - z * z).sqrt(), 0.0, z)));
+        let below_one = 1.0 - 1.0 / 16_777_216.0;
+        for &wo in directions.iter().filter(|wo| wo.z >= 0.0) {
+            for &wi in &directions {
+                let value = bsdf.eval(d, &surface, wo, wi);
+                let all = [value.value.x, value.value.y, value.value.z, value.pdf];
+                assert!(all.iter().all(|c| c.is_finite() && *c >= 0.0), "{name} {wo:?} {wi:?}: {value:?}");
+                let none = wi.z <= 0.0;
+                assert!(!none || all == [0.0; 4], "{name} {wo:?} {wi:?}: {value:?}");
+            }
+            for u in [0.0, 0.5, below_one] {
+                for v in [0.0, 0.25, below_one] {
+                    for w in [0.0, 0.5, below_one] {
+                        let s: BsdfSample<_> = bsdf.sample(d, &surface, wo, [u, v, w]);
+                        let all = array(s.wi).into_iter().chain(array(s.weight)).chain([s.pdf]);
+                        assert!(all.clone().all(f32::is_finite), "{name} {wo:?} {:?}: {s:?}", [u, v, w]);
+                        assert!(s.pdf >= 0.0 && s.weight.x >= 0.0, "{name} {wo:?} {:?}: {s:?}", [u, v, w]);
+                    }
+                }
+            }
+        }
+    }
+    for roughness in [0.0, 0.1, 1.0] {
+        check("conductor", &conductor(roughness));
+        check("glossy", &glossy(roughness, 0.04));
+    }
+    for exponent in [0.0, 1.0, 1e4] {
+        check("phong", &phong(exponent));
+    }
+    check("diffuse", &Diffuse { albedo: WHITE });
+    check("solid", &Dielectric::new(WHITE, Const(1.5), Solid));
+    check("thin", &Dielectric::new(WHITE, Const(1.5), Thin));
+    let mix = |weight| Mix { a: Diffuse { albedo: WHITE }, b: Dielectric::new(WHITE, Const(1.5), Solid), weight: Const(weight) };
+    [0.0, 0.3, 1.0].into_iter().for_each(|weight| check("mix", &mix(weight)));
+}
+
+/// Reflection and transmission with their probabilities, by choosing each lobe with its own number.
+fn lobes<'a, B: Bsdf<Scalar<'a>>>(bsdf: &B, surface: &Surface<Scalar<'a>>, d: Scalar<'a>, wo: Vec3<f32>) -> f64 {
+    // The largest number that still reflects, by bisection.
+    let reflects = |u: f32| bsdf.sample(d, surface, wo, [0.5, 0.5, u]).wi.z > 0.0;
+    let (mut low, mut high) = (0_u32, 1 << 24);
+    while low < high {
+        let middle = low.midpoint(high);
+        if reflects(middle as f32 / 16_777_216.0) { low = middle + 1 } else { high = middle }
+    }
+    f64::from(low) / 16_777_216.0
+}
+
+#[test]
+fn dielectrics_conserve_energy_and_obey_snell() {
+    let data = scene(&[FLOOR]);
+    let buffers: Buffers<'_> = data.buffers();
+    let d = Scalar::new(&buffers);
+    let front = floor(d);
+    let back = surface_at(d, 0, [0.3, 0.3], [0.0, 0.0, 1.0]);
+    let mut rng = Rng::new(92);
+    let (mut unit, mut snell, mut share) = (Worst::default(), Worst::default(), Worst::default());
+    for _ in 0..20_000 {
+        let wo = view(10.0_f64.powf(rng.range(-4.0, 0.0)), rng.range(0.0, std::f64::consts::TAU));
+        let ior = rng.range(1.01, 2.5) as f32;
+        let glass = Dielectric::new(WHITE, Const(ior), Solid);
+        for (surface, eta) in [(&front, f64::from(ior)), (&back, 1.0 / f64::from(ior))] {
+            let place = || format!("{wo:?}, η {eta}");
+            let exact = crate::support::unit(array(wo).map(f64::from));
+            let sin2 = (exact[0] * exact[0] + exact[1] * exact[1]) / (eta * eta);
+            let mirrored = glass.sample(d, surface, wo, [0.5, 0.5, 0.0]);
+            assert_eq!((mirrored.wi, mirrored.delta, mirrored.pdf), (vec3(-wo.x, -wo.y, wo.z), true, 0.0));
+            assert_eq!(mirrored.weight, vec3(1.0, 1.0, 1.0));
+            let through = glass.sample(d, surface, wo, [0.5, 0.5, 1.0 - 1.0 / 16_777_216.0]);
+            if sin2 > 1.0 - 1e-3 {
+                continue;
+            }
+            let wi = array(through.wi).map(f64::from);
+            assert!(wi[2] < 0.0, "{}", place());
+            unit.add((dot(wi, wi) - 1.0).abs(), place);
+            let error = [wi[0] + exact[0] / eta, wi[1] + exact[1] / eta, wi[2] + (1.0 - sin2).sqrt()];
+            snell.add(error.map(f64::abs).into_iter().fold(0.0, f64::max), place);
+            // Radiance changes by 1/η²; its energy does not, since the cone changes by η².
+            share.add((f64::from(through.weight.x) * eta * eta - 1.0).abs(), place);
+        }
+    }
+    unit.assert_below(1e-6, "refracted directions, |length² − 1|");
+    // The last millesimal before total reflection loses √u.
+    snell.assert_below(2e-5, "Snell's law, component");
+    share.assert_below(1e-6, "1/η² of transmitted radiance");
+    for cos in [1.0, 0.5, 0.1] {
+        let reflectance = lobes(&Dielectric::new(WHITE, Const(1.5), Solid), &front, d, view(cos, 0.3));
+        let exact = residual_render::bsdf::fresnel(d, view(cos, 0.3).z, 1.5).0;
+        assert!((reflectance - f64::from(exact)).abs() < 1e-6, "{cos}");
+    }
+}
+
+#[test]
+fn thin_sheets_do_not_bend_and_have_no_inside() {
+    let data = scene(&[FLOOR]);
+    let buffers = data.buffers();
+    let d = Scalar::new(&buffers);
+    let tint = Const([0.9, 0.5, 0.1]);
+    let sheet = Dielectric::new(tint, Const(1.5), Thin);
+    let [front, back] = [-1.0, 1.0].map(|z| surface_at(d, 0, [0.3, 0.3], [0.0, 0.0, z]));
+    assert!(front.front && !back.front);
+    for cos in [0.9, 0.6, 0.2, 0.01] {
+        let wo = view(cos, 2.0);
+        for surface in [&front, &back] {
+            let through = sheet.sample(d, surface, wo, [0.1, 0.2, 1.0 - 1.0 / 16_777_216.0]);
+            assert_eq!((through.wi, through.weight), (-wo, vec3(0.9, 0.5, 0.1)));
+            let solid = Dielectric::new(tint, Const(1.5), Solid);
+            let same = lobes(&sheet, surface, d, wo) == lobes(&solid, surface, d, wo);
+            assert_eq!(same, surface.front, "only the front of a solid is like a sheet");
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! Physics and numerics of the renderer's formulas, one topic a file. Seeds are fixed; families of statistical
+//! tests are judged together (Šidák), and the judges themselves are shown to reject what is wrong.
+
+mod bsdf_physics;
+mod bsdf_sampling;
+mod domain;
+mod elementary;
+mod lights;
+mod microfacet;
+mod sampler;
+mod spawn;
+mod support;
+mod textures;
+mod vectors;
