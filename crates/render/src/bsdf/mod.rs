@@ -21,7 +21,7 @@ pub use glossy::Glossy;
 pub use microfacet::Conductor;
 pub use phong::Phong;
 
-use crate::domain::{Bundle, Domain, choose_mask};
+use crate::domain::{Bundle, Domain};
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 
@@ -102,7 +102,7 @@ impl<D: Domain> Bundle<D> for BsdfSample<D> {
             wi: Vec3::choose(d, mask, a.wi, b.wi),
             weight: Vec3::choose(d, mask, a.weight, b.weight),
             pdf: d.select(mask, a.pdf, b.pdf),
-            delta: choose_mask(d, mask, a.delta, b.delta),
+            delta: d.select_mask(mask, a.delta, b.delta),
         }
     }
 }

@@ -222,6 +222,11 @@ pub trait Domain: Copy {
     fn select(self, mask: Self::M, a: Self::F, b: Self::F) -> Self::F;
     /// `a` where the mask holds, else `b`.
     fn select_u(self, mask: Self::M, a: Self::U, b: Self::U) -> Self::U;
+    /// `a` where the mask holds, else `b`.
+    #[inline(always)]
+    fn select_mask(self, mask: Self::M, a: Self::M, b: Self::M) -> Self::M {
+        (mask & a) | (!mask & b)
+    }
 
     /// Truncation towards zero, for 0 ≤ a < 2³²; anything else is unspecified.
     fn to_uint(self, a: Self::F) -> Self::U;
@@ -285,10 +290,4 @@ impl<D: Domain> Bundle<D> for One<D::F> {
     fn choose(d: D, mask: D::M, a: Self, b: Self) -> Self {
         One(d.select(mask, a.0, b.0))
     }
-}
-
-/// Truth values have no select of their own: `(mask ∧ a) ∨ (¬mask ∧ b)`.
-#[inline(always)]
-pub fn choose_mask<D: Domain>(_: D, mask: D::M, a: D::M, b: D::M) -> D::M {
-    (mask & a) | (!mask & b)
 }

@@ -15,7 +15,7 @@ pub use area::{Area, pdf as area_pdf};
 pub use environment::Environment;
 pub use punctual::{Directional, Point, Spot};
 
-use crate::domain::{Buffer, Bundle, Domain, choose_mask};
+use crate::domain::{Buffer, Bundle, Domain};
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 
@@ -49,10 +49,10 @@ impl<D: Domain> Bundle<D> for LightSample<D> {
         Self {
             wi: Vec3::choose(d, mask, a.wi, b.wi),
             position: Vec3::choose(d, mask, a.position, b.position),
-            infinite: choose_mask(d, mask, a.infinite, b.infinite),
+            infinite: d.select_mask(mask, a.infinite, b.infinite),
             radiance: Vec3::choose(d, mask, a.radiance, b.radiance),
             pdf: d.select(mask, a.pdf, b.pdf),
-            delta: choose_mask(d, mask, a.delta, b.delta),
+            delta: d.select_mask(mask, a.delta, b.delta),
         }
     }
 }
