@@ -2,6 +2,7 @@
 
 pub mod desc;
 mod desc_validate;
+pub mod emit;
 pub mod import;
 
 pub use desc_validate::Violation;

@@ -200,6 +200,30 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
     }
 }
 
+/// A picked light.
+#[derive(Clone, Copy, Debug)]
+pub struct Pick<D: Domain> {
+    /// The number of its kind.
+    pub kind: D::U,
+    /// First word of its record.
+    pub record: D::U,
+    /// The probability of the pick.
+    pub probability: D::F,
+}
+
+/// Picks a light.
+#[inline(always)]
+pub fn pick<D: Domain>(d: D, u: D::F) -> Pick<D> {
+    let count = d.to_real(d.uniform(Buffer::LightAlias, 0));
+    let place = u * count;
+    let slot = d.min(d.floor(place), count - d.lit(1.0));
+    let light = resolve_alias(d, Buffer::LightAlias, 1, d.to_uint(slot), place - slot);
+    let entry = light * d.uint(ALIAS_ENTRY) + d.uint(1);
+    let probability = d.load_real(Buffer::LightAlias, entry + d.uint(2));
+    let record = light * d.uint(RECORD);
+    Pick { kind: d.load(Buffer::Lights, record), record, probability }
+}
+
 /// Picks a light with `u[0]` and samples it with the other three numbers. The density includes the pick.
 #[inline(always)]
 pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
@@ -208,14 +232,7 @@ pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
     from: &Surface<D>,
     u: [D::F; 4],
 ) -> LightSample<D> {
-    let count = d.to_real(d.uniform(Buffer::LightAlias, 0));
-    let place = u[0] * count;
-    let slot = d.min(d.floor(place), count - d.lit(1.0));
-    let light = resolve_alias(d, Buffer::LightAlias, 1, d.to_uint(slot), place - slot);
-    let entry = light * d.uint(ALIAS_ENTRY) + d.uint(1);
-    let probability = d.load_real(Buffer::LightAlias, entry + d.uint(2));
-    let record = light * d.uint(RECORD);
-    let kind = d.load(Buffer::Lights, record);
+    let Pick { kind, record, probability } = pick(d, u[0]);
     let sample = lights.sample(d, KindNumber { kind, first: 0 }, record, from, [u[1], u[2], u[3]]);
     // A delta light's "density" of 1 turns into the probability of its pick; the estimator is the same.
     LightSample { pdf: sample.pdf * probability, ..sample }

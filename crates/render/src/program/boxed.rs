@@ -1,6 +1,7 @@
 //! Material programs as boxed nodes, over any domain.
 
-use super::{BsdfNode, ColorNode, NormalNode, Program, ScalarNode, SourceNode};
+use super::{AlphaNode, BsdfNode, ColorNode, NormalNode, Program, ScalarNode, SourceNode};
+use crate::alpha::{AlphaTest, covers};
 use crate::bsdf::{
     Black, Bsdf, BsdfKind, BsdfSample, BsdfValue, Conductor, Dielectric, Diffuse, Glossy, Mix,
     Phong, Solid, Sum, Thin,
@@ -8,7 +9,7 @@ use crate::bsdf::{
 use crate::domain::Domain;
 use crate::material::{Material, Shading, decode_normal, front_only};
 use crate::math::{Color, Vec3};
-use crate::surface::{Attributes, MAX_INPUTS, Surface};
+use crate::surface::{Attributes, Hit, MAX_INPUTS, Surface};
 use crate::texture::{ColorSource, Const, Param, Product, ScalarSource, VertexColor};
 
 /// A node behind a vtable: entering it re-establishes the domain's instruction set.
@@ -207,5 +208,31 @@ impl<'a, D: Domain> Bsdf<D> for &'a (dyn Bsdf<D> + Send + Sync + 'a) {
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
         (**self).kind()
+    }
+}
+
+/// The alpha of a material program as boxed nodes.
+pub struct BoxedAlpha<'a, D> {
+    pub(super) attributes: Attributes,
+    pub(super) alpha: BoxedScalar<'a, D>,
+    pub(super) test: AlphaTest<BoxedScalar<'a, D>>,
+}
+
+impl<'a, D: Domain + 'a> BoxedAlpha<'a, D> {
+    /// Builds the nodes of a program's alpha.
+    pub fn new(node: &AlphaNode) -> Self {
+        Self {
+            attributes: node.attributes,
+            alpha: scalar(&node.alpha),
+            test: match &node.test {
+                AlphaTest::Mask(cutoff) => AlphaTest::Mask(scalar(cutoff)),
+                AlphaTest::Blend => AlphaTest::Blend,
+            },
+        }
+    }
+
+    /// Whether the surface is there for this hit of a ray, given by origin and direction.
+    pub fn covers(&self, d: D, ray: [Vec3<D::F>; 2], hit: &Hit<D>) -> D::M {
+        covers(d, self.attributes, &self.alpha, &self.test, ray, hit)
     }
 }

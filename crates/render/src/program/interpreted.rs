@@ -2,27 +2,20 @@
 
 use residual_bvh::{Culling, Hit, HitFilter, Ray};
 
-use super::boxed::{self, BoxedMaterial, BoxedScalar};
+use super::boxed::{self, BoxedAlpha, BoxedMaterial};
 use super::{LightNode, Structure};
-use crate::alpha::{AlphaTest, is_there};
+use crate::alpha::is_there;
 use crate::camera::AnyCamera;
 use crate::domain::{Buffer, Buffers, Domain, Scalar};
 use crate::light::{Area, Directional, Environment, LightKind, Point, Spot};
 use crate::sampler::AnySampler;
 use crate::scene::{MaterialVisitor, Scene};
-use crate::surface::Attributes;
-
-struct BoxedAlpha<'a> {
-    attributes: Attributes,
-    alpha: BoxedScalar<'a, Scalar<'a>>,
-    test: AlphaTest<BoxedScalar<'a, Scalar<'a>>>,
-}
 
 /// A scene as boxed nodes over a domain.
 pub struct Interpreted<'a, D: Domain> {
     buffers: &'a Buffers<'a>,
     materials: Vec<BoxedMaterial<'a, D>>,
-    alphas: Vec<Option<BoxedAlpha<'a>>>,
+    alphas: Vec<Option<BoxedAlpha<'a, Scalar<'a>>>>,
     lights: Vec<Box<dyn LightKind<D> + Send + Sync + 'a>>,
     camera: AnyCamera,
     sampler: AnySampler,
@@ -42,16 +35,7 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
                 LightNode::Environment => Box::new(Environment),
             }
         };
-        let alphas = structure.programs.iter().map(|program| {
-            program.alpha.as_ref().map(|node| BoxedAlpha {
-                attributes: node.attributes,
-                alpha: boxed::scalar(&node.alpha),
-                test: match &node.test {
-                    AlphaTest::Mask(cutoff) => AlphaTest::Mask(boxed::scalar(cutoff)),
-                    AlphaTest::Blend => AlphaTest::Blend,
-                },
-            })
-        });
+        let alphas = structure.programs.iter().map(|program| program.alpha.as_ref().map(BoxedAlpha::new));
         Self {
             buffers,
             materials: structure.programs.iter().map(BoxedMaterial::new).collect(),

@@ -3,7 +3,7 @@
 mod boxed;
 mod interpreted;
 
-pub use boxed::BoxedMaterial;
+pub use boxed::{BoxedAlpha, BoxedMaterial};
 pub use interpreted::Interpreted;
 
 pub use residual_bvh::Culling;
