@@ -35,7 +35,13 @@ impl Function {
         let starts = starts.collect();
         assert_eq!(components, arguments.len(), "one argument a component");
         let values = vec![None; self.nodes()];
-        let mut run = Run { function: self, buffers, arguments, starts, values };
+        let mut run = Run {
+            function: self,
+            buffers,
+            arguments,
+            starts,
+            values,
+        };
         run.block(&self.body);
         let outputs = self.outputs.iter().flat_map(|output| &output.values);
         outputs.map(|&id| run.value(id)).collect()
@@ -46,7 +52,10 @@ impl Run<'_> {
     fn value(&self, id: Id) -> u32 {
         match self.function.node(id) {
             Node::Constant { bits, .. } => bits,
-            Node::Parameter { parameter, component } => {
+            Node::Parameter {
+                parameter,
+                component,
+            } => {
                 let start = self.starts[parameter as usize];
                 self.arguments[start + usize::from(component.unwrap_or(0))]
             }
@@ -84,7 +93,12 @@ impl Run<'_> {
                     };
                     self.set(*id, value);
                 }
-                Statement::If { mask, choices, then, otherwise } => {
+                Statement::If {
+                    mask,
+                    choices,
+                    then,
+                    otherwise,
+                } => {
                     let holds = self.value(*mask) != 0;
                     let outside = self.values.clone();
                     self.block(if holds { then } else { otherwise });

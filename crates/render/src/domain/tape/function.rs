@@ -63,7 +63,11 @@ impl<'t> Outputs<'t> {
             "outputs are of one tape"
         );
         self.tape = Some(tape);
-        self.outputs.push(Output { name, kind, values: values.iter().map(|v| v.id()).collect() });
+        self.outputs.push(Output {
+            name,
+            kind,
+            values: values.iter().map(|v| v.id()).collect(),
+        });
         self
     }
 
@@ -89,7 +93,12 @@ impl<'t> Outputs<'t> {
     #[must_use]
     pub fn vector(self, name: &'static str, value: Vec3<Real<'t>>) -> Self {
         let tape = value.x.tape();
-        self.push(name, ParameterKind::Vector, tape, &[value.x, value.y, value.z])
+        self.push(
+            name,
+            ParameterKind::Vector,
+            tape,
+            &[value.x, value.y, value.z],
+        )
     }
 
     pub(super) fn finish(self, tape: &Tape) -> Vec<Output> {
@@ -201,7 +210,11 @@ impl Schedule<'_> {
 
     fn open(&mut self, parent: usize) -> usize {
         let depth = self.blocks[parent].depth + 1;
-        self.blocks.push(Block { parent, depth, nodes: Vec::new() });
+        self.blocks.push(Block {
+            parent,
+            depth,
+            nodes: Vec::new(),
+        });
         self.blocks.len() - 1
     }
 
@@ -235,12 +248,24 @@ impl Schedule<'_> {
 
     /// The needed choices of a branch.
     fn choices(&self, branch: Id, number: u32) -> Vec<Choice> {
-        let sides = self.recorded.branches[number as usize].sides.iter().enumerate();
+        let sides = self.recorded.branches[number as usize]
+            .sides
+            .iter()
+            .enumerate();
         let choices = sides.map(|(place, &[then, otherwise])| {
-            let id = self.recorded.numbers[&Node::Choice { branch, place: place as u32 }];
-            Choice { id, then, otherwise }
+            let id = self.recorded.numbers[&Node::Choice {
+                branch,
+                place: place as u32,
+            }];
+            Choice {
+                id,
+                then,
+                otherwise,
+            }
         });
-        choices.filter(|choice| self.places[choice.id.index()].is_some()).collect()
+        choices
+            .filter(|choice| self.places[choice.id.index()].is_some())
+            .collect()
     }
 
     fn statements(&self, block: usize) -> Vec<Statement> {
@@ -261,7 +286,12 @@ impl Schedule<'_> {
             | Node::Opaque(_)
             | Node::Choice { .. } => Statement::Let(id),
         };
-        self.blocks[block].nodes.iter().rev().map(statement).collect()
+        self.blocks[block]
+            .nodes
+            .iter()
+            .rev()
+            .map(statement)
+            .collect()
     }
 }
 

@@ -95,7 +95,10 @@ impl Recorded {
     /// Opens the choice between the two sides of a branch; returns the choice that it interrupts.
     fn open_choice(&mut self, mask: Id) -> Option<Id> {
         let branch = self.branches.len() as u32;
-        self.branches.push(Branch { mask, sides: Vec::new() });
+        self.branches.push(Branch {
+            mask,
+            sides: Vec::new(),
+        });
         // Two branches are never equal, so this always makes a new node.
         let id = self.intern(Node::Branch(branch), Kind::Truth);
         self.choosing.replace(id)
@@ -106,7 +109,9 @@ impl Recorded {
         let Some(branch) = self.choosing else {
             return self.apply(Op::Select, [mask, a, b]);
         };
-        let Node::Branch(number) = self.node(branch) else { unreachable!("choices are of branches") };
+        let Node::Branch(number) = self.node(branch) else {
+            unreachable!("choices are of branches")
+        };
         let number = number as usize;
         // What `choose` itself computes is not part of either side.
         let of_sides = self.branches[number].mask == mask && a < branch && b < branch;
@@ -114,12 +119,21 @@ impl Recorded {
             return self.apply(Op::Select, [mask, a, b]);
         }
         let sides = &mut self.branches[number].sides;
-        let place = sides.iter().position(|known| *known == [a, b]).unwrap_or_else(|| {
-            sides.push([a, b]);
-            sides.len() - 1
-        });
+        let place = sides
+            .iter()
+            .position(|known| *known == [a, b])
+            .unwrap_or_else(|| {
+                sides.push([a, b]);
+                sides.len() - 1
+            });
         let kind = self.kind(a);
-        self.intern(Node::Choice { branch, place: place as u32 }, kind)
+        self.intern(
+            Node::Choice {
+                branch,
+                place: place as u32,
+            },
+            kind,
+        )
     }
 
     /// The two sides are the two constant truth values.
@@ -141,7 +155,10 @@ impl Tape {
     }
 
     fn component<K>(&self, parameter: u32, component: Option<u8>, kind: Kind) -> Expr<'_, K> {
-        let node = Node::Parameter { parameter, component };
+        let node = Node::Parameter {
+            parameter,
+            component,
+        };
         Expr::new(self, self.recorded.borrow_mut().intern(node, kind))
     }
 

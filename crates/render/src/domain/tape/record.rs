@@ -43,7 +43,11 @@ impl<K> fmt::Debug for Expr<'_, K> {
 
 impl<'t, K> Expr<'t, K> {
     pub(super) fn new(tape: &'t Tape, id: Id) -> Self {
-        Self { tape, id, kind: PhantomData }
+        Self {
+            tape,
+            id,
+            kind: PhantomData,
+        }
     }
 
     pub(super) fn id(self) -> Id {
@@ -132,7 +136,10 @@ impl<'t> Domain for Record<'t> {
 
     fn lit(self, value: f64) -> Self::F {
         let rounded = value as f32;
-        assert!(rounded.is_finite(), "{value} cannot be recorded: constants are finite");
+        assert!(
+            rounded.is_finite(),
+            "{value} cannot be recorded: constants are finite"
+        );
         self.record(|recorded| recorded.constant_node(Kind::Real, rounded.to_bits()))
     }
     fn uint(self, value: u32) -> Self::U {
@@ -199,7 +206,10 @@ impl<'t> Domain for Record<'t> {
         a.unary(Op::FromBits)
     }
     fn load(self, buffer: Buffer, index: Self::U) -> Self::U {
-        let node = Node::Load { buffer, index: index.id };
+        let node = Node::Load {
+            buffer,
+            index: index.id,
+        };
         self.record(|recorded| recorded.intern(node, Kind::Word))
     }
     fn uniform(self, buffer: Buffer, index: u32) -> Self::U {

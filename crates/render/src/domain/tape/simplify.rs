@@ -67,7 +67,8 @@ impl Recorded {
 
     /// `x` if the expression is `op` applied to `x`.
     fn operand_of(&self, id: Id, op: Op) -> Option<Id> {
-        self.applied(id).and_then(|(applied, [x, ..])| (applied == op).then_some(x))
+        self.applied(id)
+            .and_then(|(applied, [x, ..])| (applied == op).then_some(x))
     }
 
     fn is_zero(&self, id: Id) -> bool {
@@ -203,7 +204,11 @@ impl Recorded {
             return None;
         }
         let and_or = |this: &mut Self, op, negate: bool, other| {
-            let mask = if negate { this.apply(Op::Not, [mask; 3]) } else { mask };
+            let mask = if negate {
+                this.apply(Op::Not, [mask; 3])
+            } else {
+                mask
+            };
             this.apply(op, [mask, other, mask])
         };
         match (self.constant(b), self.constant(c)) {

@@ -35,10 +35,16 @@ fn copysign(magnitude: f32, sign: f32) -> f32 {
 pub fn wgsl_module(structure: &Structure) -> String {
     let mut module = Module::default();
     for (number, program) in structure.programs.iter().enumerate() {
-        module.add(Some(describe(number, program)), record::program(number, program));
+        module.add(
+            Some(describe(number, program)),
+            record::program(number, program),
+        );
     }
     for (number, node) in structure.lights.iter().enumerate() {
-        module.add(Some(format!("Light kind {number}: {node:?}")), record::light(number, structure));
+        module.add(
+            Some(format!("Light kind {number}: {node:?}")),
+            record::light(number, structure),
+        );
     }
     if !structure.lights.is_empty() {
         module.add(None, [record::light_pick()]);
@@ -53,15 +59,27 @@ pub fn wgsl_module(structure: &Structure) -> String {
 pub fn wgsl_function(function: &Function, result: &'static str) -> String {
     let mut module = Module::default();
     let name = function.name.replace('_', " ");
-    module.add(None, [Recorded { function: function.clone(), result, comment: name }]);
+    module.add(
+        None,
+        [Recorded {
+            function: function.clone(),
+            result,
+            comment: name,
+        }],
+    );
     module.finish()
 }
 
 fn describe(number: usize, program: &Program) -> String {
     let inputs = program.inputs.iter().enumerate();
-    let inputs: Vec<String> =
-        inputs.map(|(place, input)| format!("{place} {}", input.name)).collect();
-    format!("Program {number}: {:?}; inputs: {}", program.bsdf, inputs.join(", "))
+    let inputs: Vec<String> = inputs
+        .map(|(place, input)| format!("{place} {}", input.name))
+        .collect();
+    format!(
+        "Program {number}: {:?}; inputs: {}",
+        program.bsdf,
+        inputs.join(", ")
+    )
 }
 
 #[derive(Default)]
@@ -77,11 +95,19 @@ impl Module {
         if let Some(heading) = heading {
             let _ = write!(self.functions, "\n// {heading}\n");
         }
-        for Recorded { function, result, comment } in functions {
+        for Recorded {
+            function,
+            result,
+            comment,
+        } in functions
+        {
             if function.outputs.len() > 1 {
                 let text = structure(result, &function.outputs);
                 let known = self.structs.insert(result, text.clone());
-                assert!(known.is_none_or(|known| known == text), "{result} has one definition");
+                assert!(
+                    known.is_none_or(|known| known == text),
+                    "{result} has one definition"
+                );
             }
             let printed = print(&function, result);
             self.buffers.extend(printed.buffers);
@@ -93,7 +119,10 @@ impl Module {
     fn finish(self) -> String {
         let mut text = HEADER.to_owned();
         text.push('\n');
-        for buffer in Buffer::ALL.into_iter().filter(|&b| self.buffers.contains(&(b as usize))) {
+        for buffer in Buffer::ALL
+            .into_iter()
+            .filter(|&b| self.buffers.contains(&(b as usize)))
+        {
             let (binding, name) = (buffer as usize, buffer_name(buffer));
             let _ = writeln!(
                 text,

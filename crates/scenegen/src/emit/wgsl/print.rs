@@ -93,7 +93,11 @@ pub(super) fn print(function: &Function, result: &str) -> Printed {
         texts: vec![None; function.nodes()],
         names: 0,
         indent: 1,
-        printed: Printed { text: String::new(), buffers: BTreeSet::new(), copysign: false },
+        printed: Printed {
+            text: String::new(),
+            buffers: BTreeSet::new(),
+            copysign: false,
+        },
     };
     printer.function(result);
     printer.printed
@@ -115,7 +119,12 @@ fn count_uses(function: &Function, statements: &[Statement], uses: &mut [u32]) {
                 | Node::Branch(_)
                 | Node::Choice { .. } => {}
             },
-            Statement::If { mask, choices, then, otherwise } => {
+            Statement::If {
+                mask,
+                choices,
+                then,
+                otherwise,
+            } => {
                 uses[mask.index()] += 1;
                 for choice in choices {
                     uses[choice.then.index()] += 1;
@@ -164,7 +173,11 @@ impl Printer<'_> {
             _ => result,
         };
         self.indent = 0;
-        self.list(&format!("fn {}", function.name), &parameters, &format!(" -> {result} {{"));
+        self.list(
+            &format!("fn {}", function.name),
+            &parameters,
+            &format!(" -> {result} {{"),
+        );
         self.indent = 1;
         self.block(&function.body);
         let outputs: Vec<String> = function.outputs.iter().map(|o| self.output(o)).collect();
@@ -179,9 +192,7 @@ impl Printer<'_> {
     fn output(&self, output: &Output) -> String {
         let values: Vec<String> = output.values.iter().map(|&id| self.text(id).text).collect();
         match output.kind {
-            ParameterKind::Real | ParameterKind::Word | ParameterKind::Truth => {
-                values[0].clone()
-            }
+            ParameterKind::Real | ParameterKind::Word | ParameterKind::Truth => values[0].clone(),
             ParameterKind::Vector => format!("vec3f({})", values.join(", ")),
         }
     }
@@ -190,7 +201,10 @@ impl Printer<'_> {
     fn name(&mut self, id: Id) -> String {
         let text = format!("v{}", self.names);
         self.names += 1;
-        self.texts[id.index()] = Some(Text { text: text.clone(), primary: true });
+        self.texts[id.index()] = Some(Text {
+            text: text.clone(),
+            primary: true,
+        });
         text
     }
 
@@ -198,7 +212,12 @@ impl Printer<'_> {
         for statement in statements {
             match statement {
                 Statement::Let(id) => self.let_(*id),
-                Statement::If { mask, choices, then, otherwise } => {
+                Statement::If {
+                    mask,
+                    choices,
+                    then,
+                    otherwise,
+                } => {
                     self.if_(*mask, choices, then, otherwise);
                 }
             }
@@ -226,18 +245,30 @@ impl Printer<'_> {
             .iter()
             .map(|choice| {
                 let name = self.name(choice.id);
-                self.line(&format!("var {name}: {};", kind_name(self.function.kind(choice.id))));
+                self.line(&format!(
+                    "var {name}: {};",
+                    kind_name(self.function.kind(choice.id))
+                ));
                 name
             })
             .collect();
         self.line(&format!("if {} {{", self.text(mask).text));
         self.side(then, &names, choices.iter().map(|choice| choice.then));
         self.line("} else {");
-        self.side(otherwise, &names, choices.iter().map(|choice| choice.otherwise));
+        self.side(
+            otherwise,
+            &names,
+            choices.iter().map(|choice| choice.otherwise),
+        );
         self.line("}");
     }
 
-    fn side(&mut self, statements: &[Statement], names: &[String], values: impl Iterator<Item = Id>) {
+    fn side(
+        &mut self,
+        statements: &[Statement],
+        names: &[String],
+        values: impl Iterator<Item = Id>,
+    ) {
         self.indent += 1;
         self.block(statements);
         for (name, value) in names.iter().zip(values) {
@@ -249,10 +280,16 @@ impl Printer<'_> {
 
     /// How an expression is referred to.
     fn text(&self, id: Id) -> Text {
-        let primary = |text| Text { text, primary: true };
+        let primary = |text| Text {
+            text,
+            primary: true,
+        };
         match self.function.node(id) {
             Node::Constant { kind, bits } => primary(constant(kind, bits)),
-            Node::Parameter { parameter, component } => {
+            Node::Parameter {
+                parameter,
+                component,
+            } => {
                 let name = self.function.parameters[parameter as usize].name;
                 primary(match component {
                     None => name.to_owned(),
@@ -263,9 +300,9 @@ impl Printer<'_> {
             | Node::Load { .. }
             | Node::Opaque(_)
             | Node::Branch(_)
-            | Node::Choice { .. } => {
-                self.texts[id.index()].clone().expect("operands are printed first")
-            }
+            | Node::Choice { .. } => self.texts[id.index()]
+                .clone()
+                .expect("operands are printed first"),
         }
     }
 
@@ -281,7 +318,10 @@ impl Printer<'_> {
             Node::Load { buffer, index } => {
                 self.printed.buffers.insert(buffer as usize);
                 let text = format!("{}[{}]", buffer_name(buffer), self.text(index).text);
-                Text { text, primary: true }
+                Text {
+                    text,
+                    primary: true,
+                }
             }
             node @ (Node::Constant { .. }
             | Node::Parameter { .. }
@@ -295,20 +335,32 @@ impl Printer<'_> {
         let call = |name: &str| {
             let arguments = operands[..op.arity()].iter().map(|&id| self.text(id).text);
             let text = format!("{name}({})", arguments.collect::<Vec<_>>().join(", "));
-            Text { text, primary: true }
+            Text {
+                text,
+                primary: true,
+            }
         };
         let [a, b, c] = operands;
         let infix = |sign: &str| {
             let text = format!("{} {sign} {}", self.operand(a), self.operand(b));
-            Text { text, primary: false }
+            Text {
+                text,
+                primary: false,
+            }
         };
         let shift = |sign: &str, by: u32| {
             let text = format!("{} {sign} {by}u", self.operand(a));
-            Text { text, primary: false }
+            Text {
+                text,
+                primary: false,
+            }
         };
         let prefix = |sign: &str| {
             let text = format!("{sign}{}", self.operand(a));
-            Text { text, primary: false }
+            Text {
+                text,
+                primary: false,
+            }
         };
         match op {
             Op::Add | Op::AddU => infix("+"),
@@ -342,7 +394,10 @@ impl Printer<'_> {
             Op::Not => prefix("!"),
             Op::Select => {
                 let [mask, a, b] = [a, b, c].map(|id| self.text(id).text);
-                Text { text: format!("select({b}, {a}, {mask})"), primary: true }
+                Text {
+                    text: format!("select({b}, {a}, {mask})"),
+                    primary: true,
+                }
             }
         }
     }
