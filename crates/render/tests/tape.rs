@@ -2,11 +2,11 @@
 
 mod common;
 
-use common::{Formula, IMAGE, Random, TRANSFORM, TRIANGLES, Yield, scene};
+use common::{Formula, IMAGE, Random, TRANSFORM, TRIANGLES, Yield, count, ifs, loads, scene};
 use residual_render::alpha::AlphaTest;
 use residual_render::bsdf::Bsdf;
 use residual_render::camera::{AnyCamera, Camera};
-use residual_render::domain::tape::{Function, Node, Op, Outputs, Record, Statement, Tape};
+use residual_render::domain::tape::{Function, Outputs, Record, Tape};
 use residual_render::domain::{Buffer, Buffers, Bundle, Domain, Scalar, Uint};
 use residual_render::light;
 use residual_render::material::Material;
@@ -104,41 +104,6 @@ fn check<F: Formula>(formula: &F) -> Function {
         }
     }
     function
-}
-
-fn count(statements: &[Statement], wanted: &impl Fn(&Statement) -> bool) -> usize {
-    let inner = |statement: &Statement| match statement {
-        Statement::Let(_) => 0,
-        Statement::If {
-            then, otherwise, ..
-        } => count(then, wanted) + count(otherwise, wanted),
-    };
-    statements
-        .iter()
-        .map(|s| usize::from(wanted(s)) + inner(s))
-        .sum()
-}
-
-fn ifs(function: &Function) -> usize {
-    count(&function.body, &|s| matches!(s, Statement::If { .. }))
-}
-
-fn loads(function: &Function, wanted: Buffer) -> usize {
-    count(&function.body, &|s| match s {
-        Statement::Let(id) => {
-            matches!(function.node(*id), Node::Load { buffer, .. } if buffer == wanted)
-        }
-        Statement::If { .. } => false,
-    })
-}
-
-fn ops(function: &Function, wanted: Op) -> usize {
-    count(&function.body, &|s| match s {
-        Statement::Let(id) => {
-            matches!(function.node(*id), Node::Apply { op, .. } if op == wanted)
-        }
-        Statement::If { .. } => false,
-    })
 }
 
 // ---- materials ----
@@ -386,7 +351,7 @@ fn image(k: usize) -> ImageNode {
         slot: IMAGE,
         uv: UvMap {
             set: k % 2,
-            transform: (k % 3 == 0).then_some(TRANSFORM),
+            transform: k.is_multiple_of(3).then_some(TRANSFORM),
         },
         channel: (k % 4) as u32,
         wrap: (wraps[k % 3], wraps[k / 3 % 3]),
@@ -707,8 +672,6 @@ fn path_tracer() {
     check(&Steps);
 }
 
-// ---- the tape itself ----
-
 /// Elementary functions of two numbers.
 struct Elementary;
 
@@ -825,129 +788,6 @@ impl Formula for Branches {
 fn branches_and_scopes() {
     let function = check(&Branches);
     assert!(ifs(&function) >= 6);
-}
-
-#[test]
-fn branches_on_constants_are_not_recorded() {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let x = tape.real("x");
-    let one = |value| residual_render::domain::One(value);
-    let mask = d.lt(d.lit(1.0), d.lit(2.0));
-    let taken = d.branch(mask, || one(x + x), || unreachable!("the mask is constant"));
-    // Nor branches whose sides agree, nor those that say again what their mask says.
-    let agree = d.branch(d.lt(x, d.lit(0.0)), || one(x + x), || one(x + x));
-    let function = tape.function("f", Outputs::new().real("a", taken.0).real("b", agree.0));
-    assert_eq!(ifs(&function), 0);
-    assert_eq!(function.body.len(), 1);
-}
-
-#[test]
-fn equal_expressions_are_one_and_unused_ones_none() {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let (x, y) = (tape.real("x"), tape.real("y"));
-    let _unused = d.sqrt(x + y);
-    let sum = d.abs(x * y) + d.abs(y * x);
-    let function = tape.function("f", Outputs::new().real("sum", sum));
-    assert_eq!(ops(&function, Op::Mul), 1);
-    assert_eq!(ops(&function, Op::Abs), 1);
-    assert_eq!(ops(&function, Op::Sqrt), 0);
-    assert_eq!(function.body.len(), 3);
-}
-
-#[test]
-fn what_only_one_side_needs_is_computed_there() {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let x = tape.real("x");
-    let root = d.sqrt(x);
-    let one = |value| residual_render::domain::One(value);
-    let value = d.branch(d.lt(x, d.lit(1.0)), || one(root), || one(x));
-    let function = tape.function("f", Outputs::new().real("value", value.0));
-    let [
-        Statement::Let(_),
-        Statement::If {
-            then, otherwise, ..
-        },
-    ] = &function.body[..]
-    else {
-        panic!("{:?}", function.body)
-    };
-    assert_eq!((then.len(), otherwise.len()), (1, 0));
-}
-
-#[test]
-fn identities() {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let (x, n) = (tape.real("x"), tape.word("n"));
-    let (zero, one) = (d.lit(0.0), d.lit(1.0));
-    let outputs = Outputs::new()
-        .real("add", x + zero)
-        .real("sub", x - zero)
-        .real("mul", one * x)
-        .real("div", x / one)
-        .real("neg", -(-x))
-        .real("nothing", zero * x)
-        .real("fma", d.fma(x, one, zero))
-        .real("fma_nothing", d.fma(zero, x, x))
-        .real("bits", d.from_bits(d.to_bits(x)))
-        .real("select", d.select(d.truth(true), x, one))
-        .word("add_u", n + d.uint(0))
-        .word("mul_u", n * d.uint(1))
-        .word("and_u", n & d.uint(u32::MAX))
-        .word("shift", n << 0)
-        .word("folded", (d.uint(7) << 2) ^ d.uint(1))
-        .truth("not", !d.truth(false));
-    let function = tape.function("f", outputs);
-    assert_eq!(function.body, []);
-    let bits = function.evaluate(&Buffers::EMPTY, &[2.5_f32.to_bits(), 9]);
-    let real = 2.5_f32.to_bits();
-    let expected = [
-        real, real, real, real, real, 0, real, real, real, real, 9, 9, 9, 9, 29, 1,
-    ];
-    assert_eq!(bits, expected);
-}
-
-#[test]
-fn sums_of_constants_are_gathered() {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let n = tape.word("n");
-    let sum = (n + d.uint(3)) + d.uint(u32::MAX);
-    let function = tape.function("f", Outputs::new().word("sum", sum));
-    assert_eq!(function.body.len(), 1);
-    assert_eq!(function.evaluate(&Buffers::EMPTY, &[5]), [7]);
-}
-
-#[test]
-fn operations_without_finite_value_are_not_folded() {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let (one, zero) = (d.lit(1.0), d.lit(0.0));
-    let outputs = Outputs::new()
-        .real("infinite", one / zero)
-        .real("huge", d.lit(f64::from(f32::MAX)) * d.lit(2.0))
-        .real("root", d.sqrt(-one));
-    let function = tape.function("f", outputs);
-    assert_eq!(
-        ops(&function, Op::Div) + ops(&function, Op::Mul) + ops(&function, Op::Sqrt),
-        3
-    );
-    let values = function
-        .evaluate(&Buffers::EMPTY, &[])
-        .into_iter()
-        .map(f32::from_bits);
-    let values: Vec<f32> = values.collect();
-    assert!(values[0] == f32::INFINITY && values[1] == f32::INFINITY && values[2].is_nan());
-}
-
-#[test]
-#[should_panic(expected = "constants are finite")]
-fn infinite_constants_are_refused() {
-    let tape = Tape::new();
-    Record::new(&tape).lit(f64::INFINITY);
 }
 
 #[test]

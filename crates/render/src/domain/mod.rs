@@ -235,6 +235,7 @@ pub trait Domain: Copy {
     /// The bits of the number as an `f32`.
     fn to_bits(self, a: Self::F) -> Self::U;
     /// The number whose bits as an `f32` these are.
+    #[expect(clippy::wrong_self_convention, reason = "`self` is the domain, not the number")]
     fn from_bits(self, a: Self::U) -> Self::F;
 
     /// One word of a buffer.

@@ -1,5 +1,7 @@
 //! A scene's buffers full of random numbers, and the formulas that are run over them.
+#![allow(dead_code, reason = "each test uses some of it")]
 
+use residual_render::domain::tape::{Function, Node, Op, Statement};
 use residual_render::domain::{Buffer, Domain};
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
@@ -137,4 +139,39 @@ pub(crate) trait Formula {
     fn arguments(&self, random: &mut Random) -> (Vec<f32>, Vec<u32>);
     /// Runs it.
     fn run<D: Domain>(&self, d: D, reals: &[D::F], words: &[D::U]) -> Yield<D>;
+}
+
+pub(crate) fn count(statements: &[Statement], wanted: &impl Fn(&Statement) -> bool) -> usize {
+    let inner = |statement: &Statement| match statement {
+        Statement::Let(_) => 0,
+        Statement::If {
+            then, otherwise, ..
+        } => count(then, wanted) + count(otherwise, wanted),
+    };
+    statements
+        .iter()
+        .map(|s| usize::from(wanted(s)) + inner(s))
+        .sum()
+}
+
+pub(crate) fn ifs(function: &Function) -> usize {
+    count(&function.body, &|s| matches!(s, Statement::If { .. }))
+}
+
+pub(crate) fn loads(function: &Function, wanted: Buffer) -> usize {
+    count(&function.body, &|s| match s {
+        Statement::Let(id) => {
+            matches!(function.node(*id), Node::Load { buffer, .. } if buffer == wanted)
+        }
+        Statement::If { .. } => false,
+    })
+}
+
+pub(crate) fn ops(function: &Function, wanted: Op) -> usize {
+    count(&function.body, &|s| match s {
+        Statement::Let(id) => {
+            matches!(function.node(*id), Node::Apply { op, .. } if op == wanted)
+        }
+        Statement::If { .. } => false,
+    })
 }

@@ -3,6 +3,7 @@
 //! Every function is recorded from the formulas of `residual-render` (thesis, section 3.1); none is written here.
 //! Buffers are arrays of words, bound in group 0 under their number.
 
+mod names;
 mod print;
 mod record;
 
@@ -13,7 +14,8 @@ use residual_render::domain::Buffer;
 use residual_render::domain::tape::{Function, Output};
 use residual_render::program::{Program, Structure};
 
-use print::{buffer_name, print, type_name};
+use names::{buffer_name, type_name};
+use print::print;
 use record::Recorded;
 
 const HEADER: &str = "\

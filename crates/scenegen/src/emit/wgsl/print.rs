@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use residual_render::domain::Buffer;
 use residual_render::domain::tape::{
-    Choice, Function, Id, Kind, Node, Op, Output, ParameterKind, Statement,
+    Choice, Function, Id, Node, Op, Output, ParameterKind, Statement,
 };
+
+use super::names::{buffer_name, constant, kind_name, type_name};
 
 /// Expressions that are used once and no longer than this are written where they are used.
 const INLINE: usize = 72;
@@ -35,49 +36,6 @@ struct Printer<'a> {
     names: usize,
     indent: usize,
     printed: Printed,
-}
-
-/// The name of a buffer: `TriangleParams` is `triangle_params`.
-pub(super) fn buffer_name(buffer: Buffer) -> String {
-    let mut name = String::new();
-    for letter in format!("{buffer:?}").chars() {
-        if letter.is_ascii_uppercase() && !name.is_empty() {
-            name.push('_');
-        }
-        name.push(letter.to_ascii_lowercase());
-    }
-    name
-}
-
-pub(super) fn type_name(kind: ParameterKind) -> &'static str {
-    match kind {
-        ParameterKind::Real => "f32",
-        ParameterKind::Word => "u32",
-        ParameterKind::Truth => "bool",
-        ParameterKind::Vector => "vec3f",
-    }
-}
-
-fn kind_name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Real => "f32",
-        Kind::Word => "u32",
-        Kind::Truth => "bool",
-    }
-}
-
-/// A constant; reals in the shortest form that reads back as the same number.
-fn constant(kind: Kind, bits: u32) -> String {
-    match kind {
-        Kind::Real => {
-            let value = f32::from_bits(bits);
-            assert!(value.is_finite(), "recorded constants are finite");
-            format!("{value:?}f")
-        }
-        Kind::Word if bits > 0xffff => format!("{bits:#x}u"),
-        Kind::Word => format!("{bits}u"),
-        Kind::Truth => (bits != 0).to_string(),
-    }
 }
 
 /// Prints a function. Several outputs are returned as the structure `result`.
