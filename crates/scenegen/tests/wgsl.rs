@@ -464,3 +464,17 @@ fn operations_without_finite_value_are_printed() {
         .real("bits", d.from_bits(d.uint(0x7fc0_0000)));
     no_dead_code(&wgsl_function(&tape.function("f", outputs), "Three"));
 }
+
+#[test]
+#[should_panic(expected = "is used 1 times")]
+fn dead_variables_are_found() {
+    no_dead_code("\nfn f(x: f32) -> f32 {\n    let v0 = x * 2.0f;\n    return x;\n}\n");
+}
+
+#[test]
+#[should_panic(expected = "globals")]
+fn dead_buffers_are_found() {
+    no_dead_code(
+        "@group(0) @binding(0) var<storage, read> params: array<u32>;\n\nfn f(x: f32) -> f32 {\n    return x;\n}\n",
+    );
+}
