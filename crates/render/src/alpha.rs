@@ -54,7 +54,11 @@ pub fn is_there<'a, A: ScalarSource<Scalar<'a>>, C: ScalarSource<Scalar<'a>>>(
     ray: &Ray,
     hit: &Hit,
 ) -> bool {
-    let place = surface::Hit { u: hit.u, v: hit.v, prim: Uint(hit.prim) };
+    let place = surface::Hit {
+        u: hit.u,
+        v: hit.v,
+        prim: Uint(hit.prim),
+    };
     let ray = [ray.org, ray.dir].map(|[x, y, z]| vec3(x, y, z));
     covers(Scalar::new(buffers), attributes, alpha, test, ray, &place)
 }

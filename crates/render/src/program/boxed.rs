@@ -104,25 +104,47 @@ fn bsdf<'a, D: Domain + 'a>(node: &BsdfNode) -> BoxedBsdf<'a, D> {
     match *node {
         BsdfNode::Black => Box::new(Node(Black)),
         BsdfNode::Diffuse { albedo } => Box::new(Node(Diffuse { albedo })),
-        BsdfNode::Conductor { color, roughness } => {
-            Box::new(Node(Conductor { color, roughness }))
-        }
-        BsdfNode::Glossy { albedo, roughness, reflectance, grazing } => {
-            Box::new(Node(Glossy { albedo, roughness, reflectance, grazing }))
-        }
-        BsdfNode::Dielectric { transmittance, ior, solid: true } => {
-            Box::new(Node(Dielectric::new(transmittance, ior, Solid)))
-        }
-        BsdfNode::Dielectric { transmittance, ior, solid: false } => {
-            Box::new(Node(Dielectric::new(transmittance, ior, Thin)))
-        }
+        BsdfNode::Conductor { color, roughness } => Box::new(Node(Conductor { color, roughness })),
+        BsdfNode::Glossy {
+            albedo,
+            roughness,
+            reflectance,
+            grazing,
+        } => Box::new(Node(Glossy {
+            albedo,
+            roughness,
+            reflectance,
+            grazing,
+        })),
+        BsdfNode::Dielectric {
+            transmittance,
+            ior,
+            solid: true,
+        } => Box::new(Node(Dielectric::new(transmittance, ior, Solid))),
+        BsdfNode::Dielectric {
+            transmittance,
+            ior,
+            solid: false,
+        } => Box::new(Node(Dielectric::new(transmittance, ior, Thin))),
         BsdfNode::Phong { color, exponent } => Box::new(Node(Phong { color, exponent })),
-        BsdfNode::Mix { ref a, ref b, weight } => {
-            Box::new(Node(Mix { a: bsdf::<D>(a), b: bsdf::<D>(b), weight }))
-        }
-        BsdfNode::Sum { ref a, ref b, probability } => {
-            Box::new(Node(Sum { a: bsdf::<D>(a), b: bsdf::<D>(b), probability }))
-        }
+        BsdfNode::Mix {
+            ref a,
+            ref b,
+            weight,
+        } => Box::new(Node(Mix {
+            a: bsdf::<D>(a),
+            b: bsdf::<D>(b),
+            weight,
+        })),
+        BsdfNode::Sum {
+            ref a,
+            ref b,
+            probability,
+        } => Box::new(Node(Sum {
+            a: bsdf::<D>(a),
+            b: bsdf::<D>(b),
+            probability,
+        })),
     }
 }
 
@@ -146,7 +168,10 @@ impl<'a, D: Domain + 'a> BoxedMaterial<'a, D> {
     /// # Panics
     /// If the program has more than [`MAX_INPUTS`] inputs, which no plan makes.
     pub fn new(program: &Program) -> Self {
-        assert!(program.inputs.len() <= MAX_INPUTS, "a program has at most {MAX_INPUTS} inputs");
+        assert!(
+            program.inputs.len() <= MAX_INPUTS,
+            "a program has at most {MAX_INPUTS} inputs"
+        );
         let inputs = program.inputs.iter().map(|input| match &input.source {
             SourceNode::Color(node) => BoxedInput::Color(color(node)),
             SourceNode::Scalar(node) => BoxedInput::Scalar(scalar(node)),
@@ -190,9 +215,16 @@ impl<D: Domain> Material<D> for BoxedMaterial<'_, D> {
         }
         let emission = self.emission.map(|emission| {
             let radiance = emission.radiance.color(d, surface);
-            if emission.double_sided { radiance } else { front_only(d, surface, radiance) }
+            if emission.double_sided {
+                radiance
+            } else {
+                front_only(d, surface, radiance)
+            }
         });
-        Shading { emission, bsdf: &*self.bsdf }
+        Shading {
+            emission,
+            bsdf: &*self.bsdf,
+        }
     }
 }
 

@@ -26,16 +26,23 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
     pub fn new(structure: &Structure, buffers: &'a Buffers<'a>) -> Self {
         let light = |node: &LightNode| -> Box<dyn LightKind<D> + Send + Sync + 'a> {
             match node {
-                LightNode::Area { emission, attributes } => {
-                    Box::new(Area { emission: boxed::color(emission), attributes: *attributes })
-                }
+                LightNode::Area {
+                    emission,
+                    attributes,
+                } => Box::new(Area {
+                    emission: boxed::color(emission),
+                    attributes: *attributes,
+                }),
                 LightNode::Point => Box::new(Point),
                 LightNode::Spot => Box::new(Spot),
                 LightNode::Directional => Box::new(Directional),
                 LightNode::Environment => Box::new(Environment),
             }
         };
-        let alphas = structure.programs.iter().map(|program| program.alpha.as_ref().map(BoxedAlpha::new));
+        let alphas = structure
+            .programs
+            .iter()
+            .map(|program| program.alpha.as_ref().map(BoxedAlpha::new));
         Self {
             buffers,
             materials: structure.programs.iter().map(BoxedMaterial::new).collect(),
@@ -56,9 +63,14 @@ impl<D: Domain> HitFilter for Interpreted<'_, D> {
     fn accept(&self, ray: &Ray, hit: &Hit) -> bool {
         let program = self.buffers.word(Buffer::TrianglePrograms, hit.prim) as usize;
         match &self.alphas[program] {
-            Some(alpha) => {
-                is_there(self.buffers, alpha.attributes, &alpha.alpha, &alpha.test, ray, hit)
-            }
+            Some(alpha) => is_there(
+                self.buffers,
+                alpha.attributes,
+                &alpha.alpha,
+                &alpha.test,
+                ray,
+                hit,
+            ),
             None => true,
         }
     }
