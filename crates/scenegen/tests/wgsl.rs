@@ -82,7 +82,6 @@ fn no_dead_code(text: &str) {
     let before = accept(&main);
     let mut after = before.clone();
     compact(&mut after, KeepUnused::No);
-    // naga's own lowering leaves abstract literals behind; they are unused in any module with literals.
     let shrunk: Vec<_> = sizes(&before)
         .into_iter()
         .zip(sizes(&after))
