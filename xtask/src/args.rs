@@ -189,9 +189,14 @@ pub(crate) struct Triple(pub(crate) [f32; 3]);
 impl FromStr for Triple {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Vec<f32> = text.split(',').map(|part| finite(part.trim())).collect::<Result<_, _>>()?;
+        let numbers: Vec<f32> = text
+            .split(',')
+            .map(|part| finite(part.trim()))
+            .collect::<Result<_, _>>()?;
         let three = <[f32; 3]>::try_from(numbers);
-        three.map(Self).map_err(|_| "expected three numbers, as in 1,0.5,-2".to_owned())
+        three
+            .map(Self)
+            .map_err(|_| "expected three numbers, as in 1,0.5,-2".to_owned())
     }
 }
 
@@ -204,29 +209,57 @@ impl FromStr for Size {
     fn from_str(text: &str) -> Result<Self, String> {
         let error = || "expected width and height from 1 to 65536, as in 1280x720".to_owned();
         let (width, height) = text.split_once(['x', 'X']).ok_or_else(error)?;
-        let parse = |part: &str| part.trim().parse::<u32>().ok().filter(|n| (1..=65536).contains(n));
-        Ok(Self([parse(width).ok_or_else(error)?, parse(height).ok_or_else(error)?]))
+        let parse = |part: &str| {
+            part.trim()
+                .parse::<u32>()
+                .ok()
+                .filter(|n| (1..=65536).contains(n))
+        };
+        Ok(Self([
+            parse(width).ok_or_else(error)?,
+            parse(height).ok_or_else(error)?,
+        ]))
     }
 }
 
 fn finite(text: &str) -> Result<f32, String> {
-    let number: f32 = text.parse().map_err(|_| format!("{text:?} is not a number"))?;
-    if number.is_finite() { Ok(number) } else { Err("expected a finite number".to_owned()) }
+    let number: f32 = text
+        .parse()
+        .map_err(|_| format!("{text:?} is not a number"))?;
+    if number.is_finite() {
+        Ok(number)
+    } else {
+        Err("expected a finite number".to_owned())
+    }
 }
 
 fn non_negative(text: &str) -> Result<f32, String> {
     let number = finite(text)?;
-    if number >= 0.0 { Ok(number) } else { Err("expected a number that is not negative".to_owned()) }
+    if number >= 0.0 {
+        Ok(number)
+    } else {
+        Err("expected a number that is not negative".to_owned())
+    }
 }
 
 fn field_of_view(text: &str) -> Result<f32, String> {
     let degrees = finite(text)?;
     let fits = degrees > 0.0 && degrees < 180.0;
-    if fits { Ok(degrees) } else { Err("expected an angle between 0 and 180 degrees".to_owned()) }
+    if fits {
+        Ok(degrees)
+    } else {
+        Err("expected an angle between 0 and 180 degrees".to_owned())
+    }
 }
 
 fn duration(text: &str) -> Result<Duration, String> {
-    let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0), ("", 1.0)];
+    let units = [
+        ("ms", 1e-3),
+        ("s", 1.0),
+        ("m", 60.0),
+        ("h", 3600.0),
+        ("", 1.0),
+    ];
     let (number, scale) = units
         .iter()
         .find_map(|(unit, scale)| Some((text.strip_suffix(unit)?.parse::<f64>().ok()?, scale)))

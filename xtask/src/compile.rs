@@ -13,7 +13,9 @@ use residual_scenegen::plan::Plan;
 
 /// The workspace that this command line was built from.
 fn workspace() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace")
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("xtask lies in the workspace")
 }
 
 /// Where the workspace's builds are; compiled renderers share their dependencies with them.
@@ -33,7 +35,8 @@ pub(crate) fn compile(plan: &Plan, lanes: LaneCount) -> Result<LoadedRenderer> {
     let mut hasher = DefaultHasher::new();
     source.hash(&mut hasher);
     let name = format!("residual_scene_{:016x}", hasher.finish());
-    let library = build(&name, &source).with_context(|| format!("compiling the renderer of {:?}", plan.name))?;
+    let library = build(&name, &source)
+        .with_context(|| format!("compiling the renderer of {:?}", plan.name))?;
     // SAFETY: cargo has just made this library from code that we emitted, for these sources and this lane count.
     Ok(unsafe { LoadedRenderer::load(library.as_os_str(), lanes) }?)
 }
@@ -56,7 +59,13 @@ fn build(name: &str, source: &str) -> Result<PathBuf> {
     let output = Command::new(&cargo)
         // The workspace's `.cargo/config.toml` says for which machine to build.
         .current_dir(workspace)
-        .args(["build", "--release", "--offline", "--quiet", "--manifest-path"])
+        .args([
+            "build",
+            "--release",
+            "--offline",
+            "--quiet",
+            "--manifest-path",
+        ])
         .arg(directory.join("Cargo.toml"))
         .arg("--target-dir")
         .arg(&target)
@@ -65,7 +74,11 @@ fn build(name: &str, source: &str) -> Result<PathBuf> {
     if !output.status.success() {
         bail!("cargo failed:\n{}", String::from_utf8_lossy(&output.stderr));
     }
-    let file = format!("{}{name}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let file = format!(
+        "{}{name}{}",
+        std::env::consts::DLL_PREFIX,
+        std::env::consts::DLL_SUFFIX
+    );
     Ok(target.join("release").join(file))
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 
 use anyhow::{Context, Result};
 use residual_device_cpu::LaneCount;
-use residual_scenegen::emit::rust;
+use residual_scenegen::emit::{rust, wgsl_module};
 
 use crate::args::{EmitArgs, TargetArg};
 use crate::{compile, scene};
@@ -14,7 +14,7 @@ pub(crate) fn run(args: &EmitArgs) -> Result<()> {
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let (text, extension) = match args.target {
         TargetArg::Rust => (rust::module(&plan, &compile::lanes_name(lanes)), "rs"),
-        TargetArg::Wgsl => anyhow::bail!("not yet"),
+        TargetArg::Wgsl => (wgsl_module(&plan.structure), "wgsl"),
     };
     match &args.output {
         None => print!("{text}"),

@@ -16,7 +16,10 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
             .iter()
             .map(|&effect| {
                 let reasons = effects.reasons(effect);
-                (effect.to_string(), json!({ "in": !reasons.is_empty(), "called_for_by": reasons }))
+                (
+                    effect.to_string(),
+                    json!({ "in": !reasons.is_empty(), "called_for_by": reasons }),
+                )
             })
             .collect();
         let programs: Vec<_> = plan
@@ -49,7 +52,11 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
     );
     println!("\neffects in:");
     for effect in effects.iter() {
-        println!("  {:<22} {}", effect.to_string(), shortened(effects.reasons(effect)));
+        println!(
+            "  {:<22} {}",
+            effect.to_string(),
+            shortened(effects.reasons(effect))
+        );
     }
     let out: Vec<_> = Effect::ALL
         .iter()
@@ -67,7 +74,12 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
 /// The first few reasons.
 fn shortened(reasons: &[String]) -> String {
     const SHOWN: usize = 3;
-    let first = reasons.iter().take(SHOWN).cloned().collect::<Vec<_>>().join("; ");
+    let first = reasons
+        .iter()
+        .take(SHOWN)
+        .cloned()
+        .collect::<Vec<_>>()
+        .join("; ");
     match reasons.len().saturating_sub(SHOWN) {
         0 => first,
         more => format!("{first}; and {more} more"),

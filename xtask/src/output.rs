@@ -1,6 +1,5 @@
 //! Image files. A file is written beside its place, synced, and renamed: there is never half an image.
 
-
 use std::io::{Cursor, Write as _};
 use std::path::Path;
 
@@ -24,17 +23,26 @@ pub(crate) fn check(path: &Path) -> Result<()> {
     }
     let directory = directory(path);
     if !directory.is_dir() {
-        bail!("{}: the directory {} does not exist", path.display(), directory.display());
+        bail!(
+            "{}: the directory {} does not exist",
+            path.display(),
+            directory.display()
+        );
     }
     Ok(())
 }
 
 fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+    path.extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase()
 }
 
 fn directory(path: &Path) -> &Path {
-    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    path.parent()
+        .filter(|parent| !parent.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
 }
 
 /// Writes the film as a PNG (sRGB) or an EXR (linear).
@@ -56,7 +64,8 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
-            file.as_file().set_permissions(std::fs::Permissions::from_mode(0o644))?;
+            file.as_file()
+                .set_permissions(std::fs::Permissions::from_mode(0o644))?;
         }
         file.persist(path)?;
         Ok(())
@@ -67,12 +76,20 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
 /// The code of a linear value in sRGB (IEC 61966-2-1).
 fn encode_srgb(linear: f32) -> u8 {
     let c = f64::from(linear).clamp(0.0, 1.0);
-    let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    let encoded = if c <= 0.003_130_8 {
+        12.92 * c
+    } else {
+        1.055 * c.powf(1.0 / 2.4) - 0.055
+    };
     (encoded * 255.0).round() as u8
 }
 
 fn png(film: &Film) -> Result<Vec<u8>> {
-    let pixels = film.image().into_iter().flat_map(|rgb| rgb.map(encode_srgb)).collect();
+    let pixels = film
+        .image()
+        .into_iter()
+        .flat_map(|rgb| rgb.map(encode_srgb))
+        .collect();
     let image = image::RgbImage::from_raw(film.width(), film.height(), pixels)
         .expect("the film has as many pixels as its size says");
     let mut bytes = Cursor::new(Vec::new());
@@ -118,11 +135,19 @@ mod tests {
     #[test]
     fn files_read_back() {
         let directory = tempfile::tempdir().unwrap();
-        let metadata = Metadata { scene: "s".into(), samples: 1, seconds: 1.0, relmse: None };
+        let metadata = Metadata {
+            scene: "s".into(),
+            samples: 1,
+            seconds: 1.0,
+            relmse: None,
+        };
         let png = directory.path().join("a.png");
         write(&png, &film(), &metadata).unwrap();
         let read = image::open(&png).unwrap().to_rgb8();
-        assert_eq!((read.dimensions(), read.get_pixel(2, 1).0), ((3, 2), [248, 252, 255]));
+        assert_eq!(
+            (read.dimensions(), read.get_pixel(2, 1).0),
+            ((3, 2), [248, 252, 255])
+        );
         let exr = directory.path().join("a.exr");
         write(&exr, &film(), &metadata).unwrap();
         let read = image_from_exr(&exr);

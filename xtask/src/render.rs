@@ -10,7 +10,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use residual_bvh::BuildQuality;
 use residual_device_cpu::lanes::OwnedBvh;
 use residual_device_cpu::plugin::LoadedRenderer;
-use residual_device_cpu::{CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer};
+use residual_device_cpu::{
+    CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer,
+};
 use residual_render::film::Film;
 use residual_scenegen::plan::Plan;
 
@@ -55,14 +57,23 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             && let Some(compilation) = compilation
         {
             compilation.join().expect("compilation does not panic");
-            if let Some(Compilation { result: Err(error), .. }) = compiled.get() {
+            if let Some(Compilation {
+                result: Err(error), ..
+            }) = compiled.get()
+            {
                 bail!("{error:#}\n--tier interpreted renders without a compiler");
             }
         }
-        let view = SceneView { buffers: plan.data.buffers(), bvh: bvh.view() };
+        let view = SceneView {
+            buffers: plan.data.buffers(),
+            bvh: bvh.view(),
+        };
         let choose = || -> &dyn TileRenderer {
             match compiled.get() {
-                Some(Compilation { result: Ok(renderer), .. }) => {
+                Some(Compilation {
+                    result: Ok(renderer),
+                    ..
+                }) => {
                     let samples = samples_done.load(Ordering::Relaxed);
                     compiled_from.fetch_min(samples, Ordering::Relaxed);
                     renderer
@@ -80,7 +91,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         };
         let cpu_before = cpu_seconds();
         done = Some(device.render(choose, &view, &options, show));
-        render_cpu = cpu_before.zip(cpu_seconds()).map(|(before, after)| after - before);
+        render_cpu = cpu_before
+            .zip(cpu_seconds())
+            .map(|(before, after)| after - before);
         bar.finish_and_clear();
         // The image is ready: it is written before the compiler, if it still runs, is waited for.
         let (film, report) = done.as_ref().expect("just rendered");
@@ -90,17 +103,27 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             seconds: report.elapsed.as_secs_f64(),
             relmse: film.error().map(|error| error.relmse),
         };
-        outputs.iter().try_for_each(|path| output::write(path, film, &metadata))
+        outputs
+            .iter()
+            .try_for_each(|path| output::write(path, film, &metadata))
     })?;
     let (film, report) = done.expect("rendered");
 
     let (tier, compile_time) = match compiled.get() {
-        Some(Compilation { result: Ok(_), time }) => {
+        Some(Compilation {
+            result: Ok(_),
+            time,
+        }) => {
             let used = compiled_from.load(Ordering::Relaxed) != u32::MAX;
             (if used { "specialized" } else { "interpreted" }, *time)
         }
-        Some(Compilation { result: Err(error), time }) => {
-            eprintln!("warning: the renderer could not be compiled; it was interpreted instead: {error:#}");
+        Some(Compilation {
+            result: Err(error),
+            time,
+        }) => {
+            eprintln!(
+                "warning: the renderer could not be compiled; it was interpreted instead: {error:#}"
+            );
             ("interpreted", *time)
         }
         None => ("interpreted", Duration::ZERO),
@@ -110,14 +133,25 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         plan: &plan,
         film: &film,
         report: &report,
-        stages: Stages { load, bvh: bvh_time, compile: compile_time, total: start.elapsed() },
+        stages: Stages {
+            load,
+            bvh: bvh_time,
+            compile: compile_time,
+            total: start.elapsed(),
+        },
         tier,
         lanes: lanes.count(),
         compiled_from: (from != u32::MAX).then_some(from),
         render_cpu,
     };
     if !args.quiet {
-        summary(&film, &report.elapsed, &outputs, args, statistics.compiled_from);
+        summary(
+            &film,
+            &report.elapsed,
+            &outputs,
+            args,
+            statistics.compiled_from,
+        );
     }
     match args.stats {
         Some(StatsArg::Json) => println!("{}", statistics.json()),
@@ -137,7 +171,10 @@ impl Compilation {
     fn run(plan: &Plan, lanes: LaneCount) -> Self {
         let start = Instant::now();
         let result = compile::compile(plan, lanes);
-        Self { result, time: start.elapsed() }
+        Self {
+            result,
+            time: start.elapsed(),
+        }
     }
 }
 
@@ -163,14 +200,28 @@ fn progress_bar(args: &RenderArgs, options: &RenderOptions) -> ProgressBar {
         (None, Some(time)) => time.as_millis() as u64,
         (None, None) => 0,
     };
-    let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {elapsed} gone, {eta} left");
+    let style =
+        ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {elapsed} gone, {eta} left");
     ProgressBar::new(length).with_style(style.expect("the template is valid"))
 }
 
-fn summary(film: &Film, elapsed: &Duration, outputs: &[PathBuf], args: &RenderArgs, from: Option<u32>) {
-    let files: Vec<_> = outputs.iter().map(|path| path.display().to_string()).collect();
+fn summary(
+    film: &Film,
+    elapsed: &Duration,
+    outputs: &[PathBuf],
+    args: &RenderArgs,
+    from: Option<u32>,
+) {
+    let files: Vec<_> = outputs
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
     let seconds = elapsed.as_secs_f64();
-    eprintln!("{}: {} samples per pixel in {seconds:.2} s", files.join(", "), film.samples());
+    eprintln!(
+        "{}: {} samples per pixel in {seconds:.2} s",
+        files.join(", "),
+        film.samples()
+    );
     if let Some(error) = film.error() {
         // Relative RMS error; it halves in four times the time.
         let (error, ci) = (error.relmse, error.ci95);

@@ -17,7 +17,13 @@ pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
         strength: args.env_strength,
         rotation_degrees: args.env_rotate,
     });
-    let scene = import(&args.scene, &ImportOptions { environment, strict: args.strict })?;
+    let scene = import(
+        &args.scene,
+        &ImportOptions {
+            environment,
+            strict: args.strict,
+        },
+    )?;
     let view = View {
         eye: args.eye.map(|v| v.0),
         dir: args.dir.map(|v| v.0),
@@ -47,10 +53,23 @@ pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
     };
     let plan = plan(&scene, &options).with_context(|| args.scene.display().to_string())?;
     for warning in scene.warnings.iter().chain(&plan.warnings) {
-        eprintln!("warning: {}: {}: {}", args.scene.display(), warning.place, warning.message);
+        eprintln!(
+            "warning: {}: {}: {}",
+            args.scene.display(),
+            warning.place,
+            warning.message
+        );
     }
-    if args.strict && plan.warnings.iter().any(|warning| warning.place.starts_with("material")) {
-        bail!("{}: --strict: the warnings above say what is not rendered faithfully", args.scene.display());
+    if args.strict
+        && plan
+            .warnings
+            .iter()
+            .any(|warning| warning.place.starts_with("material"))
+    {
+        bail!(
+            "{}: --strict: the warnings above say what is not rendered faithfully",
+            args.scene.display()
+        );
     }
     Ok((plan, start.elapsed()))
 }

@@ -42,8 +42,17 @@ pub(crate) fn cpu_seconds() -> Option<f64> {
 /// The greatest resident memory of this process in MiB, where the system tells.
 fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(line.trim().strip_suffix(" kB")?.trim().parse::<f64>().ok()? / 1024.0)
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(
+        line.trim()
+            .strip_suffix(" kB")?
+            .trim()
+            .parse::<f64>()
+            .ok()?
+            / 1024.0,
+    )
 }
 
 impl Statistics<'_> {
@@ -56,7 +65,10 @@ impl Statistics<'_> {
         let c = &self.report.counters;
         let render = self.report.elapsed.as_secs_f64();
         let rays = c.camera_rays + c.bounce_rays + c.shadow_rays;
-        let effects: Vec<String> = Effects::of(self.plan).iter().map(|e| e.to_string()).collect();
+        let effects: Vec<String> = Effects::of(self.plan)
+            .iter()
+            .map(|e| e.to_string())
+            .collect();
         let error = self.film.error();
         json!({
             "scene": self.plan.name,
@@ -126,7 +138,10 @@ impl Statistics<'_> {
             self.tier,
         );
         for (name, seconds) in stages {
-            text.push_str(&format!("{name:<12} {:5.1} %\n", 100.0 * seconds / busy.max(1e-9)));
+            text.push_str(&format!(
+                "{name:<12} {:5.1} %\n",
+                100.0 * seconds / busy.max(1e-9)
+            ));
         }
         text
     }

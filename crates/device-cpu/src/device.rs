@@ -63,7 +63,11 @@ impl CpuDevice {
     /// # Errors
     /// If the system gives no threads.
     pub fn new(threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
-        Ok(Self { pool: rayon::ThreadPoolBuilder::new().num_threads(threads).build()? })
+        Ok(Self {
+            pool: rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()?,
+        })
     }
 
     /// Renders until the options say stop. Between passes `renderer` is asked anew which renderer to use, so that a
@@ -82,7 +86,9 @@ impl CpuDevice {
         let mut done = 0;
         let mut pass = 1;
         loop {
-            let left = options.samples.map_or(u32::MAX, |samples| samples.saturating_sub(done));
+            let left = options
+                .samples
+                .map_or(u32::MAX, |samples| samples.saturating_sub(done));
             let late = options.time.is_some_and(|time| start.elapsed() >= time);
             if left == 0 || (late && done > 0) {
                 break;
@@ -108,7 +114,10 @@ impl CpuDevice {
                 });
             });
             done += count;
-            progress(Progress { samples: done, elapsed: start.elapsed() });
+            progress(Progress {
+                samples: done,
+                elapsed: start.elapsed(),
+            });
             if pass_start.elapsed() < PASS_TIME {
                 pass = (pass * 2).min(MAX_PASS);
             }

@@ -25,16 +25,24 @@ impl TileRenderer for Interpreter {
         let scene_from = &self.structure;
         match self.lanes {
             LaneCount::One => {
-                render_lanes!(One, scene, job, radiance, |b| Interpreted::new(scene_from, b))
+                render_lanes!(One, scene, job, radiance, |b| Interpreted::new(
+                    scene_from, b
+                ))
             }
             LaneCount::Four => {
-                render_lanes!(Four, scene, job, radiance, |b| Interpreted::new(scene_from, b))
+                render_lanes!(Four, scene, job, radiance, |b| Interpreted::new(
+                    scene_from, b
+                ))
             }
             LaneCount::Eight => {
-                render_lanes!(Eight, scene, job, radiance, |b| Interpreted::new(scene_from, b))
+                render_lanes!(Eight, scene, job, radiance, |b| Interpreted::new(
+                    scene_from, b
+                ))
             }
             LaneCount::Sixteen => {
-                render_lanes!(Sixteen, scene, job, radiance, |b| Interpreted::new(scene_from, b))
+                render_lanes!(Sixteen, scene, job, radiance, |b| Interpreted::new(
+                    scene_from, b
+                ))
             }
         }
     }

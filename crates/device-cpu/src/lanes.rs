@@ -57,7 +57,9 @@ impl fmt::Display for LaneCount {
 impl FromStr for LaneCount {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|lanes| lanes.count().to_string() == text);
+        let found = Self::ALL
+            .into_iter()
+            .find(|lanes| lanes.count().to_string() == text);
         found.ok_or_else(|| format!("{text:?} is not a lane count; use 1, 4, 8 or 16"))
     }
 }

@@ -53,7 +53,10 @@ struct RawSlice<T> {
 
 impl<T> RawSlice<T> {
     fn new(slice: &[T]) -> Self {
-        Self { start: slice.as_ptr(), length: slice.len() }
+        Self {
+            start: slice.as_ptr(),
+            length: slice.len(),
+        }
     }
 
     /// # Safety
@@ -64,13 +67,19 @@ impl<T> RawSlice<T> {
     }
 
     fn erase(self) -> RawSlice<()> {
-        RawSlice { start: self.start.cast(), length: self.length }
+        RawSlice {
+            start: self.start.cast(),
+            length: self.length,
+        }
     }
 }
 
 impl RawSlice<()> {
     fn of<T>(self) -> RawSlice<T> {
-        RawSlice { start: self.start.cast(), length: self.length }
+        RawSlice {
+            start: self.start.cast(),
+            length: self.length,
+        }
     }
 }
 
@@ -146,7 +155,10 @@ impl LoadedRenderer {
                 return Err(LoadError::Mismatch);
             }
             let render_tile: RenderTile = *library.get(b"residual_render_tile\0")?;
-            Ok(Self { render_tile, _library: library })
+            Ok(Self {
+                render_tile,
+                _library: library,
+            })
         }
     }
 }
@@ -154,11 +166,21 @@ impl LoadedRenderer {
 impl TileRenderer for LoadedRenderer {
     fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, radiance: &mut [f32]) -> Counters {
         let (width, nodes, packets) = match scene.bvh {
-            AnyBvh::Four(bvh) => (4, RawSlice::new(bvh.nodes()).erase(), RawSlice::new(bvh.packets()).erase()),
-            AnyBvh::Eight(bvh) => (8, RawSlice::new(bvh.nodes()).erase(), RawSlice::new(bvh.packets()).erase()),
-            AnyBvh::Sixteen(bvh) => {
-                (16, RawSlice::new(bvh.nodes()).erase(), RawSlice::new(bvh.packets()).erase())
-            }
+            AnyBvh::Four(bvh) => (
+                4,
+                RawSlice::new(bvh.nodes()).erase(),
+                RawSlice::new(bvh.packets()).erase(),
+            ),
+            AnyBvh::Eight(bvh) => (
+                8,
+                RawSlice::new(bvh.nodes()).erase(),
+                RawSlice::new(bvh.packets()).erase(),
+            ),
+            AnyBvh::Sixteen(bvh) => (
+                16,
+                RawSlice::new(bvh.nodes()).erase(),
+                RawSlice::new(bvh.packets()).erase(),
+            ),
         };
         let mut call = TileCall {
             words: Buffer::ALL.map(|buffer| RawSlice::new(scene.buffers.get(buffer))),
@@ -188,9 +210,18 @@ pub unsafe fn answer(call: *mut TileCall, renderer: &impl TileRenderer) {
         let call = &mut *call;
         let buffers = Buffers::new(call.words.map(|words| words.get()));
         let bvh = match call.width {
-            16 => AnyBvh::Sixteen(BvhView::new_unchecked(call.nodes.of().get(), call.packets.of().get())),
-            8 => AnyBvh::Eight(BvhView::new_unchecked(call.nodes.of().get(), call.packets.of().get())),
-            _ => AnyBvh::Four(BvhView::new_unchecked(call.nodes.of().get(), call.packets.of().get())),
+            16 => AnyBvh::Sixteen(BvhView::new_unchecked(
+                call.nodes.of().get(),
+                call.packets.of().get(),
+            )),
+            8 => AnyBvh::Eight(BvhView::new_unchecked(
+                call.nodes.of().get(),
+                call.packets.of().get(),
+            )),
+            _ => AnyBvh::Four(BvhView::new_unchecked(
+                call.nodes.of().get(),
+                call.packets.of().get(),
+            )),
         };
         let radiance = slice::from_raw_parts_mut(call.radiance, call.radiance_length);
         call.counters = renderer.render_tile(&SceneView { buffers, bvh }, &call.job, radiance);

@@ -76,14 +76,21 @@ impl<D, S, L: ?Sized> Shade<'_, D, S, L> {
                 continue;
             }
             let bsdf = &shading.bsdf;
-            let vertex = Vertex { surface: &surface, bsdf, wo, depth: d.uint(self.depth) };
+            let vertex = Vertex {
+                surface: &surface,
+                bsdf,
+                wo,
+                depth: d.uint(self.depth),
+            };
             let id = d.word(ids);
             if kind.scatters && !self.lights.is_empty() {
                 let shadow = self.tracer.on_shadow(d, &path, &vertex, self.lights);
-                self.shadows.push(d, d.bits(shadow.active) & valid, &shadow, id);
+                self.shadows
+                    .push(d, d.bits(shadow.active) & valid, &shadow, id);
             }
             let bounce = self.tracer.on_bounce(d, &path, &vertex);
-            self.next.push(d, d.bits(bounce.active) & valid, &bounce.path, id);
+            self.next
+                .push(d, d.bits(bounce.active) & valid, &bounce.path, id);
         }
     }
 }

@@ -38,7 +38,11 @@ struct Compaction {
 impl Compaction {
     #[inline(always)]
     fn new<D: Lanes>(bits: u32, at: usize) -> Self {
-        Self { bits, at, all: bits == ((1_u64 << D::LANES) - 1) as u32 }
+        Self {
+            bits,
+            at,
+            all: bits == ((1_u64 << D::LANES) - 1) as u32,
+        }
     }
 
     #[inline(always)]
@@ -291,7 +295,12 @@ impl SortedHits {
         for column in paths.reals().chain([&mut self.u, &mut self.v]) {
             permute(column, &mut self.scratch_real, order);
         }
-        for column in [&mut paths.pixel, &mut paths.index, &mut paths.id, &mut self.prim] {
+        for column in [
+            &mut paths.pixel,
+            &mut paths.index,
+            &mut paths.id,
+            &mut self.prim,
+        ] {
             permute(column, &mut self.scratch_word, order);
         }
     }

@@ -35,7 +35,12 @@ impl TileJob {
     /// The tile as a rectangle.
     pub fn rect(&self) -> TileRect {
         let [x, y, width, height] = self.tile;
-        TileRect { x, y, width, height }
+        TileRect {
+            x,
+            y,
+            width,
+            height,
+        }
     }
 }
 
@@ -133,7 +138,14 @@ where
     radiance.fill(0.0);
 
     for (wave, radiance) in radiance.chunks_exact_mut(area * 3).enumerate() {
-        emit(d, scene, &tracer, job, job.samples[0] + wave as u32, &mut paths);
+        emit(
+            d,
+            scene,
+            &tracer,
+            job,
+            job.samples[0] + wave as u32,
+            &mut paths,
+        );
         clock.lap(&mut counters.emit);
         for depth in 1..=job.max_depth {
             if paths.len() == 0 {
@@ -142,7 +154,9 @@ where
             // Closest hits.
             for i in 0..paths.len() {
                 let hit = closest_hit(simd, bvh, &paths.ray(i), scene);
-                let program = hit.is_hit().then(|| buffers.word(Buffer::TrianglePrograms, hit.prim));
+                let program = hit
+                    .is_hit()
+                    .then(|| buffers.word(Buffer::TrianglePrograms, hit.prim));
                 hits.set(i, &hit, program);
             }
             if depth == 1 {
@@ -232,5 +246,10 @@ fn emit<D: Lanes, Sc: Scene<D>>(
 /// A ray of the traversal library; `tmin` is 0: rays start beyond the error of their origin.
 #[inline(always)]
 pub(crate) fn ray(org: [f32; 3], dir: [f32; 3], tmax: f32) -> Ray {
-    Ray { org, tmin: 0.0, dir, tmax }
+    Ray {
+        org,
+        tmin: 0.0,
+        dir,
+        tmax,
+    }
 }

@@ -2,7 +2,8 @@
 
 use residual_bvh::{Hit, Ray};
 
-use crate::domain::{Buffers, Scalar};
+use crate::domain::{Buffers, Domain, Scalar, Uint};
+use crate::math::Vec3;
 use crate::math::vec3::vec3;
 use crate::sampler::{hash, unit};
 use crate::surface::{self, Attributes, Surface};
@@ -18,6 +19,31 @@ pub enum AlphaTest<C> {
     Blend,
 }
 
+/// Whether the surface is there for this hit of the ray from `org` in direction `dir`.
+#[inline(always)]
+pub fn covers<D: Domain, A: ScalarSource<D>, C: ScalarSource<D>>(
+    d: D,
+    attributes: Attributes,
+    alpha: &A,
+    test: &AlphaTest<C>,
+    [org, dir]: [Vec3<D::F>; 2],
+    hit: &surface::Hit<D>,
+) -> D::M {
+    let surface = Surface::new(d, attributes, hit, dir);
+    let alpha = alpha.scalar(d, &surface);
+    match test {
+        AlphaTest::Mask(cutoff) => d.le(cutoff.scalar(d, &surface), alpha),
+        AlphaTest::Blend => {
+            let [o, p, q] = [org.x, org.y, org.z].map(|c| d.to_bits(c));
+            let [x, y, z] = [dir.x, dir.y, dir.z].map(|c| d.to_bits(c));
+            let key = [o, p, q, x, y, z, hit.prim]
+                .into_iter()
+                .fold(d.uint(0), |key, bits| hash(d, key ^ bits));
+            d.lt(unit(d, key), alpha)
+        }
+    }
+}
+
 /// Whether the surface is there for this hit of this ray.
 #[inline(always)]
 pub fn is_there<'a, A: ScalarSource<Scalar<'a>>, C: ScalarSource<Scalar<'a>>>(
@@ -28,21 +54,11 @@ pub fn is_there<'a, A: ScalarSource<Scalar<'a>>, C: ScalarSource<Scalar<'a>>>(
     ray: &Ray,
     hit: &Hit,
 ) -> bool {
-    let d = Scalar::new(buffers);
-    let word = crate::domain::Uint;
-    let place = surface::Hit { u: hit.u, v: hit.v, prim: word(hit.prim) };
-    let [x, y, z] = ray.dir;
-    let surface = Surface::new(d, attributes, &place, vec3(x, y, z));
-    let alpha = alpha.scalar(d, &surface);
-    match test {
-        AlphaTest::Mask(cutoff) => alpha >= cutoff.scalar(d, &surface),
-        AlphaTest::Blend => {
-            let [o, p, q] = ray.org.map(f32::to_bits);
-            let [x, y, z] = ray.dir.map(f32::to_bits);
-            let key = [o, p, q, x, y, z, hit.prim]
-                .into_iter()
-                .fold(word(0), |key, bits| hash(d, key ^ word(bits)));
-            unit(d, key) < alpha
-        }
-    }
+    let place = surface::Hit {
+        u: hit.u,
+        v: hit.v,
+        prim: Uint(hit.prim),
+    };
+    let ray = [ray.org, ray.dir].map(|[x, y, z]| vec3(x, y, z));
+    covers(Scalar::new(buffers), attributes, alpha, test, ray, &place)
 }

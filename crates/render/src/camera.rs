@@ -36,7 +36,11 @@ impl<D: Domain> Camera<D> for Perspective {
     #[inline(always)]
     fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
         let dir = (vector(d, 9) + on_film(d, film)).normalize(d);
-        Ray { org: vector(d, 0), dir, tmax: d.lit(f64::from(f32::MAX)) }
+        Ray {
+            org: vector(d, 0),
+            dir,
+            tmax: d.lit(f64::from(f32::MAX)),
+        }
     }
 }
 
@@ -44,7 +48,11 @@ impl<D: Domain> Camera<D> for Orthographic {
     #[inline(always)]
     fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
         let org = vector(d, 0) + on_film(d, film);
-        Ray { org, dir: vector(d, 9).normalize(d), tmax: d.lit(f64::from(f32::MAX)) }
+        Ray {
+            org,
+            dir: vector(d, 9).normalize(d),
+            tmax: d.lit(f64::from(f32::MAX)),
+        }
     }
 }
 

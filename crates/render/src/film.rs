@@ -67,7 +67,11 @@ impl FilmTile {
     /// # Panics
     /// If `radiance` is not a whole number of samples of the tile.
     pub fn add(&mut self, radiance: &[f32]) {
-        assert_eq!(radiance.len() % (self.rect.area() * 3), 0, "whole samples of the tile");
+        assert_eq!(
+            radiance.len() % (self.rect.area() * 3),
+            0,
+            "whole samples of the tile"
+        );
         for sample in radiance.chunks_exact(self.rect.area() * 3) {
             self.samples += 1;
             let n = self.samples as f64;
@@ -110,10 +114,22 @@ impl Film {
                 width: tile_size.min(width - x),
                 height: tile_size.min(height - y),
             };
-            FilmTile { rect, pixels: vec![Pixel::default(); rect.area()], samples: 0, invalid: 0 }
+            FilmTile {
+                rect,
+                pixels: vec![Pixel::default(); rect.area()],
+                samples: 0,
+                invalid: 0,
+            }
         };
-        let tiles = starts(height).flat_map(|y| starts(width).map(move |x| tile(x, y))).collect();
-        Self { width, height, tiles, tile_size }
+        let tiles = starts(height)
+            .flat_map(|y| starts(width).map(move |x| tile(x, y)))
+            .collect();
+        Self {
+            width,
+            height,
+            tiles,
+            tile_size,
+        }
     }
 
     /// Pixels a row.
@@ -133,7 +149,11 @@ impl Film {
 
     /// Samples a pixel so far; the fewest of any tile.
     pub fn samples(&self) -> u64 {
-        self.tiles.iter().map(|tile| tile.samples).min().unwrap_or(0)
+        self.tiles
+            .iter()
+            .map(|tile| tile.samples)
+            .min()
+            .unwrap_or(0)
     }
 
     /// Samples that were NaN, infinite or negative. They count as black; a healthy render has none.
@@ -146,7 +166,8 @@ impl Film {
         let per_row = self.width.div_ceil(self.tile_size);
         (0..self.height).flat_map(move |y| {
             (0..self.width).map(move |x| {
-                let tile = &self.tiles[(y / self.tile_size * per_row + x / self.tile_size) as usize];
+                let tile =
+                    &self.tiles[(y / self.tile_size * per_row + x / self.tile_size) as usize];
                 let place = (y - tile.rect.y) * tile.rect.width + (x - tile.rect.x);
                 (&tile.pixels[place as usize], tile.samples as f64)
             })
@@ -155,7 +176,9 @@ impl Film {
 
     /// The image: mean linear red, green, blue, row by row from the top.
     pub fn image(&self) -> Vec<[f32; 3]> {
-        self.pixels().map(|(p, n)| p.sum.map(|c| (c / n.max(1.0)) as f32)).collect()
+        self.pixels()
+            .map(|(p, n)| p.sum.map(|c| (c / n.max(1.0)) as f32))
+            .collect()
     }
 
     /// Mean of the whole image.
@@ -178,10 +201,17 @@ impl Film {
         let relative = |(p, n): (&Pixel, f64)| {
             let variance = p.deviations / (n - 1.0) / n;
             let denominator = p.mean * p.mean + floor;
-            if denominator > 0.0 { variance / denominator } else { 0.0 }
+            if denominator > 0.0 {
+                variance / denominator
+            } else {
+                0.0
+            }
         };
         let relmse = self.pixels().map(relative).sum::<f64>() / count;
-        let spread = self.pixels().map(|p| (relative(p) - relmse).powi(2)).sum::<f64>();
+        let spread = self
+            .pixels()
+            .map(|p| (relative(p) - relmse).powi(2))
+            .sum::<f64>();
         let ci95 = 1.96 * (spread / (count - 1.0).max(1.0) / count).sqrt();
         Some(ErrorEstimate { relmse, ci95 })
     }
@@ -216,8 +246,9 @@ mod tests {
         let mut film = Film::new(1, 1, 1);
         let samples = 1 << 16;
         for _ in 0..512 {
-            let tile: Vec<f32> =
-                (0..samples).flat_map(|s| [1000.0 + if s % 2 == 0 { 0.5 } else { -0.5 }; 3]).collect();
+            let tile: Vec<f32> = (0..samples)
+                .flat_map(|s| [1000.0 + if s % 2 == 0 { 0.5 } else { -0.5 }; 3])
+                .collect();
             film.tiles_mut()[0].add(&tile);
         }
         let n = 512.0 * f64::from(samples);

@@ -40,5 +40,9 @@ pub fn front_only<D: Domain>(d: D, surface: &Surface<D>, emission: Color<D::F>) 
 #[inline(always)]
 pub fn decode_normal<D: Domain>(d: D, rgb: Color<D::F>, scale: D::F) -> Vec3<D::F> {
     let [x, y, z] = [rgb.x, rgb.y, rgb.z].map(|c| d.fma(c, d.lit(2.0), d.lit(-1.0)));
-    Vec3 { x: x * scale, y: y * scale, z }
+    Vec3 {
+        x: x * scale,
+        y: y * scale,
+        z,
+    }
 }

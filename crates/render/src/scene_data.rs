@@ -34,7 +34,9 @@ impl SceneData {
     /// Vertex positions.
     pub fn positions(&self) -> Vec<[f32; 3]> {
         let words = self.buffer(Buffer::Positions).chunks_exact(3);
-        words.map(|p| [p[0], p[1], p[2]].map(f32::from_bits)).collect()
+        words
+            .map(|p| [p[0], p[1], p[2]].map(f32::from_bits))
+            .collect()
     }
 
     /// Corners of the triangles.

@@ -43,8 +43,13 @@ pub struct Attributes {
 
 impl Attributes {
     /// None at all.
-    pub const NONE: Self =
-        Self { normals: false, tangents: false, uv0: false, uv1: false, colors: false };
+    pub const NONE: Self = Self {
+        normals: false,
+        tangents: false,
+        uv0: false,
+        uv1: false,
+        colors: false,
+    };
 
     /// What either reads.
     pub fn union(self, other: Self) -> Self {
@@ -101,13 +106,17 @@ impl<D: Domain> Corners<D> {
     fn new(d: D, prim: D::U, u: D::F, v: D::F) -> Self {
         let three = prim + (prim << 1);
         let vertices = [0, 1, 2].map(|k| d.load(Buffer::Triangles, three + d.uint(k)));
-        Self { vertices, weights: [d.lit(1.0) - u - v, u, v] }
+        Self {
+            vertices,
+            weights: [d.lit(1.0) - u - v, u, v],
+        }
     }
 
     /// Component `k` of an attribute with `stride` words a vertex, at the three corners.
     #[inline(always)]
     fn component(&self, d: D, buffer: Buffer, stride: u32, k: u32) -> [D::F; 3] {
-        self.vertices.map(|vertex| d.load_real(buffer, vertex * d.uint(stride) + d.uint(k)))
+        self.vertices
+            .map(|vertex| d.load_real(buffer, vertex * d.uint(stride) + d.uint(k)))
     }
 
     #[inline(always)]
@@ -142,7 +151,12 @@ fn position<D: Domain>(
     let [x, y, z] = axes.map(|c| {
         let terms = [c[0] * weights[0], c[1] * weights[1], c[2] * weights[2]];
         let error = (d.abs(terms[0]) + d.abs(terms[1]) + d.abs(terms[2])) * gamma;
-        (terms[0] + terms[1] + terms[2], error, c[1] - c[0], c[2] - c[0])
+        (
+            terms[0] + terms[1] + terms[2],
+            error,
+            c[1] - c[0],
+            c[2] - c[0],
+        )
     });
     let edge1 = vec3(x.2, y.2, z.2);
     let edge2 = vec3(x.3, y.3, z.3);
@@ -185,13 +199,21 @@ impl<D: Domain> Surface<D> {
             let sign = d.select(turned, -sign, sign);
             let bitangent = shading_normal.cross(tangent).scale(sign);
             let pick = |a: Vec3<D::F>, b: Vec3<D::F>| {
-                vec3(d.select(usable, a.x, b.x), d.select(usable, a.y, b.y), d.select(usable, a.z, b.z))
+                vec3(
+                    d.select(usable, a.x, b.x),
+                    d.select(usable, a.y, b.y),
+                    d.select(usable, a.z, b.z),
+                )
             };
             frame.tangent = pick(tangent, frame.tangent);
             frame.bitangent = pick(bitangent, frame.bitangent);
         }
         let uv = |wanted: bool, buffer: Buffer| {
-            if wanted { corners.uv(d, buffer) } else { [zero; 2] }
+            if wanted {
+                corners.uv(d, buffer)
+            } else {
+                [zero; 2]
+            }
         };
         let one = d.lit(1.0);
         let (color, alpha) = if attributes.colors {
@@ -210,7 +232,10 @@ impl<D: Domain> Surface<D> {
             frame,
             front,
             cos_geometric: d.abs(cos_outward),
-            uv: [uv(attributes.uv0, Buffer::Uv0), uv(attributes.uv1, Buffer::Uv1)],
+            uv: [
+                uv(attributes.uv0, Buffer::Uv0),
+                uv(attributes.uv1, Buffer::Uv1),
+            ],
             color,
             alpha,
             params: d.load(Buffer::TriangleParams, hit.prim),
@@ -239,7 +264,11 @@ impl<D: Domain> Surface<D> {
         let normal = visible(d, self.frame.to_world(local).normalize_any(d), wo);
         let tangent = self.frame.tangent - normal.scale(self.frame.tangent.dot(d, normal));
         let tangent = tangent.normalize_any(d);
-        let handed = self.frame.normal.cross(self.frame.tangent).dot(d, self.frame.bitangent);
+        let handed = self
+            .frame
+            .normal
+            .cross(self.frame.tangent)
+            .dot(d, self.frame.bitangent);
         self.frame = Frame {
             tangent,
             bitangent: normal.cross(tangent).scale(d.copysign(d.lit(1.0), handed)),
@@ -285,5 +314,9 @@ pub fn offset_point<D: Domain>(
         let further = moved + d.copysign(d.abs(moved) * ulp, o);
         d.select(d.eq(o, d.lit(0.0)), p, further)
     };
-    vec3(outward(point.x, offset.x), outward(point.y, offset.y), outward(point.z, offset.z))
+    vec3(
+        outward(point.x, offset.x),
+        outward(point.y, offset.y),
+        outward(point.z, offset.z),
+    )
 }

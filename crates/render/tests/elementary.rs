@@ -14,7 +14,9 @@ fn scalar() -> Scalar<'static> {
 
 /// Every `stride`-th `f32` from `low` to `high`, both positive, and both ends.
 fn floats(low: f32, high: f32, stride: usize) -> impl Iterator<Item = f32> {
-    let bits = (low.to_bits()..=high.to_bits()).step_by(stride).map(f32::from_bits);
+    let bits = (low.to_bits()..=high.to_bits())
+        .step_by(stride)
+        .map(f32::from_bits);
     bits.chain([low, high])
 }
 
@@ -35,9 +37,13 @@ fn sincos_turns_keeps_its_bound() {
     }
     for k in 0..=64 {
         let u = k as f32 / 16.0;
-        [u, u.next_up(), u.next_down(), -u].into_iter().for_each(&mut check);
+        [u, u.next_up(), u.next_down(), -u]
+            .into_iter()
+            .for_each(&mut check);
     }
-    [0.0, -0.0, 1.0 - 1.0 / 16_777_216.0].into_iter().for_each(&mut check);
+    [0.0, -0.0, 1.0 - 1.0 / 16_777_216.0]
+        .into_iter()
+        .for_each(&mut check);
     worst.assert_below(1.5e-7, "sincos_turns, absolute");
 }
 
@@ -57,7 +63,9 @@ fn atan2_keeps_its_bound() {
     let mut worst = Worst::default();
     let mut check = |y: f32, x: f32| {
         let exact = f64::from(y).atan2(f64::from(x));
-        worst.add((f64::from(atan2(d, y, x)) - exact).abs(), || format!("({y:e}, {x:e})"));
+        worst.add((f64::from(atan2(d, y, x)) - exact).abs(), || {
+            format!("({y:e}, {x:e})")
+        });
     };
     let mut rng = Rng::new(10);
     for _ in 0..2_000_000 {
@@ -81,7 +89,9 @@ fn exp2_keeps_its_bound() {
     let mut worst = Worst::default();
     let mut check = |x: f32| {
         let exact = f64::from(x.clamp(-126.0, 127.0)).exp2();
-        worst.add((f64::from(exp2(d, x)) / exact - 1.0).abs(), || format!("{x:e}"));
+        worst.add((f64::from(exp2(d, x)) / exact - 1.0).abs(), || {
+            format!("{x:e}")
+        });
     };
     for x in floats(1e-10, 127.0, 131) {
         check(x);
@@ -89,10 +99,15 @@ fn exp2_keeps_its_bound() {
     }
     for x in -127..=128 {
         let x = x as f32;
-        [x, x + 0.5, (x + 0.5).next_down(), x.next_down()].into_iter().for_each(&mut check);
+        [x, x + 0.5, (x + 0.5).next_down(), x.next_down()]
+            .into_iter()
+            .for_each(&mut check);
     }
     worst.assert_below(2e-7, "exp2, relative");
-    assert_eq!((exp2(d, 1e30), exp2(d, -1e30)), (2.0_f32.powi(127), f32::MIN_POSITIVE));
+    assert_eq!(
+        (exp2(d, 1e30), exp2(d, -1e30)),
+        (2.0_f32.powi(127), f32::MIN_POSITIVE)
+    );
 }
 
 #[test]
@@ -119,24 +134,45 @@ fn pow_keeps_its_bound() {
     let mut worst = Worst::default();
     let mut rng = Rng::new(11);
     for _ in 0..4_000_000 {
-        let x = if rng.word() & 1 == 0 { rng.unit() } else { rng.signed_power(-60.0, 60.0).abs() };
+        let x = if rng.word() & 1 == 0 {
+            rng.unit()
+        } else {
+            rng.signed_power(-60.0, 60.0).abs()
+        };
         let y = rng.signed_power(-8.0, 12.0);
         let logarithm = f64::from(y) * f64::from(x).log2();
         if x < f32::MIN_POSITIVE || logarithm.abs() > 125.0 {
             continue;
         }
         let error = f64::from(pow(d, x, y)) / logarithm.exp2() - 1.0;
-        worst.add(error.abs() / (1.0 + logarithm.abs()), || format!("{x:e}^{y:e}"));
+        worst.add(error.abs() / (1.0 + logarithm.abs()), || {
+            format!("{x:e}^{y:e}")
+        });
     }
     worst.assert_below(3e-7, "pow, relative ÷ (1 + |y·log₂ x|)");
-    assert_eq!((pow(d, 0.0, 3.0), pow(d, f32::MIN_POSITIVE / 2.0, 0.5)), (0.0, 0.0));
-    assert_eq!((pow(d, 1.0, 1e9), pow(d, 0.5, 1e9)), (1.0, f32::MIN_POSITIVE));
+    assert_eq!(
+        (pow(d, 0.0, 3.0), pow(d, f32::MIN_POSITIVE / 2.0, 0.5)),
+        (0.0, 0.0)
+    );
+    assert_eq!(
+        (pow(d, 1.0, 1e9), pow(d, 0.5, 1e9)),
+        (1.0, f32::MIN_POSITIVE)
+    );
 }
 
 /// Numbers at the ends of what samplers give, and some between (hard case S-07).
 fn edge_numbers() -> Vec<f32> {
     let step = 1.0 / 16_777_216.0;
-    let mut numbers = vec![0.0, step, 2.0 * step, 0.25, 0.5 - step, 0.5, 0.5 + step, 0.75];
+    let mut numbers = vec![
+        0.0,
+        step,
+        2.0 * step,
+        0.25,
+        0.5 - step,
+        0.5,
+        0.5 + step,
+        0.75,
+    ];
     numbers.extend([1.0 - 2.0 * step, 1.0 - step]);
     let mut rng = Rng::new(12);
     numbers.extend((0..300).map(|_| rng.unit()));
@@ -149,7 +185,10 @@ fn triangle_warp_stays_inside() {
     for u in edge_numbers() {
         for v in edge_numbers() {
             let (b1, b2) = warp::triangle(d, [u, v]);
-            assert!(b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0, "({u}, {v}) → ({b1}, {b2})");
+            assert!(
+                b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0,
+                "({u}, {v}) → ({b1}, {b2})"
+            );
         }
     }
 }
@@ -179,9 +218,14 @@ fn cosine_warp_stays_on_the_hemisphere() {
         for v in edge_numbers() {
             let w = warp::cosine_hemisphere(d, [u, v]);
             assert!(w.z > 0.0, "({u}, {v}) → {w:?}");
-            worst.add((f64::from(w.dot(d, w)) - 1.0).abs(), || format!("({u}, {v})"));
+            worst.add((f64::from(w.dot(d, w)) - 1.0).abs(), || {
+                format!("({u}, {v})")
+            });
             assert!(warp::cosine_hemisphere_pdf(d, w.z) > 0.0);
         }
     }
-    worst.assert_below(8.0 * f64::from(f32::EPSILON) / 2.0, "cosine_hemisphere, |length² − 1|");
+    worst.assert_below(
+        8.0 * f64::from(f32::EPSILON) / 2.0,
+        "cosine_hemisphere, |length² − 1|",
+    );
 }

@@ -3,8 +3,8 @@
 use residual_render::domain::{Buffer, Scalar};
 use residual_render::scene_data::SceneData;
 use residual_render::texture::{
-    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, ColorSource, Image, LinearFloat, Nearest, Repeat, ScalarSource,
-    SrgbRgba8, UvMap, srgb_table,
+    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, ColorSource, Image, LinearFloat, Nearest,
+    Repeat, ScalarSource, SrgbRgba8, UvMap, srgb_table,
 };
 
 use crate::support::random::Rng;
@@ -13,7 +13,11 @@ use crate::support::{Worst, array, ulp_diff};
 
 fn exact_srgb(code: u32) -> f64 {
     let c = f64::from(code) / 255.0;
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    if c <= 0.04045 {
+        c / 12.92
+    } else {
+        ((c + 0.055) / 1.055).powf(2.4)
+    }
 }
 
 #[test]
@@ -24,13 +28,20 @@ fn srgb_table_is_correctly_rounded_and_goes_back() {
         assert!((f64::from(linear) - exact).abs() <= 0.5 * ulp, "{code}");
         assert!(ulp_diff(linear, exact as f32) == 0, "{code}");
         let l = f64::from(linear);
-        let encoded = if l <= 0.003_130_8 { l * 12.92 } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
+        let encoded = if l <= 0.003_130_8 {
+            l * 12.92
+        } else {
+            1.055 * l.powf(1.0 / 2.4) - 0.055
+        };
         assert_eq!((encoded * 255.0).round() as u32, code);
     }
 }
 
 type AnyImage = Image<AnyWrap, AnyWrap, AnyFilter, AnyFormat>;
-const UV: UvMap = UvMap { set: 0, transform: None };
+const UV: UvMap = UvMap {
+    set: 0,
+    transform: None,
+};
 const WRAPS: [AnyWrap; 3] = [AnyWrap::Repeat, AnyWrap::Mirror, AnyWrap::Clamp];
 
 /// A scene with one image of `f32` texels whose red is the texel's number plus one; all else is −1e9.
@@ -46,7 +57,14 @@ fn numbered(width: u32, height: u32) -> SceneData {
 }
 
 fn image(wrap: (AnyWrap, AnyWrap), filter: AnyFilter) -> AnyImage {
-    Image { slot: 0, uv: UV, channel: 0, wrap, filter, format: AnyFormat::LinearFloat }
+    Image {
+        slot: 0,
+        uv: UV,
+        channel: 0,
+        wrap,
+        filter,
+        format: AnyFormat::LinearFloat,
+    }
 }
 
 fn sample(data: &SceneData, image: &AnyImage, uv: [f32; 2]) -> f32 {
@@ -55,7 +73,10 @@ fn sample(data: &SceneData, image: &AnyImage, uv: [f32; 2]) -> f32 {
     let mut surface = floor(d);
     surface.uv[0] = uv;
     let (color, scalar) = (image.color(d, &surface), image.scalar(d, &surface));
-    assert!(color.x.to_bits() == scalar.to_bits() || color.x.is_nan(), "{color:?} {scalar}");
+    assert!(
+        color.x.to_bits() == scalar.to_bits() || color.x.is_nan(),
+        "{color:?} {scalar}"
+    );
     scalar
 }
 
@@ -73,7 +94,19 @@ fn wrap(mode: AnyWrap, i: i64, size: i64) -> i64 {
 
 fn coordinates() -> Vec<f32> {
     let mut rng = Rng::new(110);
-    let mut list = vec![0.0, -0.0, 1.0, -1.0, 1.0_f32.next_down(), 1.0_f32.next_up(), 0.5, 2.0, -1e-10, 1e-10, 1234.5];
+    let mut list = vec![
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        1.0_f32.next_down(),
+        1.0_f32.next_up(),
+        0.5,
+        2.0,
+        -1e-10,
+        1e-10,
+        1234.5,
+    ];
     list.extend((0..150).map(|_| rng.range(-4.0, 4.0) as f32));
     list.extend((0..50).map(|_| rng.range(-1000.0, 1000.0) as f32));
     list
@@ -86,8 +119,13 @@ fn nearest_texels_are_the_integer_references() {
     for (width, height) in SIZES {
         let data = numbered(width, height);
         for wraps in WRAPS.into_iter().flat_map(|u| WRAPS.map(|v| (u, v))) {
-            for (u, v) in coordinates().into_iter().zip(coordinates().into_iter().rev()) {
-                let place = |c: f32, size: u32, mode| wrap(mode, (c * size as f32).floor() as i64, i64::from(size));
+            for (u, v) in coordinates()
+                .into_iter()
+                .zip(coordinates().into_iter().rev())
+            {
+                let place = |c: f32, size: u32, mode| {
+                    wrap(mode, (c * size as f32).floor() as i64, i64::from(size))
+                };
                 let (x, y) = (place(u, width, wraps.0), place(v, height, wraps.1));
                 let expected = (y * i64::from(width) + x) as f32 + 1.0;
                 let got = sample(&data, &image(wraps, AnyFilter::Nearest), [u, v]);
@@ -103,12 +141,18 @@ fn bilinear_texels_are_the_f64_references() {
     for (width, height) in SIZES {
         let data = numbered(width, height);
         for wraps in WRAPS.into_iter().flat_map(|u| WRAPS.map(|v| (u, v))) {
-            for (u, v) in coordinates().into_iter().zip(coordinates().into_iter().rev()) {
+            for (u, v) in coordinates()
+                .into_iter()
+                .zip(coordinates().into_iter().rev())
+            {
                 // The reference starts where texel coordinates are already rounded.
                 let (x, y) = (u * width as f32 - 0.5, v * height as f32 - 0.5);
                 let (x0, y0) = (x.floor(), y.floor());
                 let texel = |i: i64, j: i64| {
-                    let (i, j) = (wrap(wraps.0, i, width.into()), wrap(wraps.1, j, height.into()));
+                    let (i, j) = (
+                        wrap(wraps.0, i, width.into()),
+                        wrap(wraps.1, j, height.into()),
+                    );
                     (j * i64::from(width) + i) as f64 + 1.0
                 };
                 let (s, t) = (f64::from(x) - f64::from(x0), f64::from(y) - f64::from(y0));
@@ -116,7 +160,9 @@ fn bilinear_texels_are_the_f64_references() {
                 let exact = row(y0 as i64) * (1.0 - t) + row(y0 as i64 + 1) * t;
                 let got = sample(&data, &image(wraps, AnyFilter::Bilinear), [u, v]);
                 let range = f64::from(width * height);
-                worst.add((f64::from(got) - exact).abs() / range, || format!("({u}, {v}) {width} × {height} {wraps:?}"));
+                worst.add((f64::from(got) - exact).abs() / range, || {
+                    format!("({u}, {v}) {width} × {height} {wraps:?}")
+                });
             }
         }
     }
@@ -125,7 +171,18 @@ fn bilinear_texels_are_the_f64_references() {
 
 #[test]
 fn hostile_coordinates_stay_inside() {
-    let hostile = [1e8, -1e8, 3e38, -3e38, 1e20, 16_777_217.0, 1e-45, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+    let hostile = [
+        1e8,
+        -1e8,
+        3e38,
+        -3e38,
+        1e20,
+        16_777_217.0,
+        1e-45,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::NAN,
+    ];
     for (width, height) in SIZES {
         let data = numbered(width, height);
         let last = (width * height) as f32;
@@ -137,7 +194,10 @@ fn hostile_coordinates_stay_inside() {
                     let got = sample(&data, &image(wraps, AnyFilter::Bilinear), [u, v]);
                     // A coordinate without a place in the image may give NaN, which the film counts; never a
                     // texel of another image, which here would be far below 0.
-                    assert!(got.is_nan() || (0.999..=last * 1.001).contains(&got), "({u}, {v}) {wraps:?}: {got}");
+                    assert!(
+                        got.is_nan() || (0.999..=last * 1.001).contains(&got),
+                        "({u}, {v}) {wraps:?}: {got}"
+                    );
                     let finite = u.is_finite() && v.is_finite() && u.abs() < 1e37 && v.abs() < 1e37;
                     assert!(!finite || got.is_finite(), "({u}, {v}) {wraps:?}");
                 }
@@ -151,7 +211,11 @@ fn transforms_and_second_coordinates() {
     let mut data = numbered(4, 4);
     // u' = v, v' = −u + 1: a quarter turn.
     let matrix = [0.0, 1.0, 0.0, -1.0, 0.0, 1.0];
-    let params: Vec<f32> = [8, 4, 4].map(f32::from_bits).into_iter().chain(matrix).collect();
+    let params: Vec<f32> = [8, 4, 4]
+        .map(f32::from_bits)
+        .into_iter()
+        .chain(matrix)
+        .collect();
     set_params(&mut data, &params);
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
@@ -159,7 +223,14 @@ fn transforms_and_second_coordinates() {
     surface.uv = [[0.1, 0.9], [0.6, 0.4]];
     let at = |set: usize, transform: Option<u32>| {
         let clamped = (Clamp, Repeat);
-        let image = Image { slot: 0, uv: UvMap { set, transform }, channel: 0, wrap: clamped, filter: Nearest, format: LinearFloat };
+        let image = Image {
+            slot: 0,
+            uv: UvMap { set, transform },
+            channel: 0,
+            wrap: clamped,
+            filter: Nearest,
+            format: LinearFloat,
+        };
         image.scalar(d, &surface)
     };
     assert_eq!(at(0, None), 13.0, "column 0, row 3");
@@ -178,19 +249,37 @@ fn channels_and_formats() {
     for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
         let read = |channel: u32, format: AnyFormat| {
             let wrap = (AnyWrap::Repeat, AnyWrap::Repeat);
-            Image { slot: 0, uv: UV, channel, wrap, filter, format }
+            Image {
+                slot: 0,
+                uv: UV,
+                channel,
+                wrap,
+                filter,
+                format,
+            }
         };
         for (k, code) in [10, 100, 200, 128].into_iter().enumerate() {
             let linear = code as f32 / 255.0;
             let got = read(k as u32, AnyFormat::LinearRgba8).scalar(d, &surface);
             assert!(ulp_diff(got, linear) <= 1, "{got} {linear}");
-            let decoded = if k == 3 { linear } else { exact_srgb(code) as f32 };
+            let decoded = if k == 3 {
+                linear
+            } else {
+                exact_srgb(code) as f32
+            };
             let got = read(k as u32, AnyFormat::SrgbRgba8).scalar(d, &surface);
             assert!(ulp_diff(got, decoded) <= 1, "{got} {decoded}");
         }
         let color = array(read(0, AnyFormat::SrgbRgba8).color(d, &surface));
         assert_eq!(color, [10, 100, 200].map(|code| exact_srgb(code) as f32));
     }
-    let full = Image { slot: 0, uv: UV, channel: 3, wrap: (Repeat, Repeat), filter: Bilinear, format: SrgbRgba8 };
+    let full = Image {
+        slot: 0,
+        uv: UV,
+        channel: 3,
+        wrap: (Repeat, Repeat),
+        filter: Bilinear,
+        format: SrgbRgba8,
+    };
     assert!((full.scalar(d, &surface) - 128.0 / 255.0).abs() < 1e-7);
 }

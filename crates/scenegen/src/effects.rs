@@ -129,7 +129,8 @@ impl Effects {
         }
         if let Some(emission) = program.emission {
             self.add(Effect::EmittingSurfaces, who);
-            if matches!(&program.inputs[emission.radiance.0].source, SourceNode::Color(node) if has_image(node)) {
+            if matches!(&program.inputs[emission.radiance.0].source, SourceNode::Color(node) if has_image(node))
+            {
                 self.add(Effect::TexturedEmission, who);
             }
         }

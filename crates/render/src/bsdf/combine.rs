@@ -63,13 +63,24 @@ impl<F: crate::domain::Real> Blend<F> {
         // The part of the interval that was chosen becomes the whole interval of the next choice.
         let rest = d.select(second, u[2], u[2] - p) / probability;
         let u = [u[0], u[1], d.min(rest, d.lit(1.0 - 1.0 / 16_777_216.0))];
-        let chosen = d.branch(second, || b.sample(d, surface, wo, u), || a.sample(d, surface, wo, u));
+        let chosen = d.branch(
+            second,
+            || b.sample(d, surface, wo, u),
+            || a.sample(d, surface, wo, u),
+        );
         let factor = d.select(second, self.factor_b, self.factor_a);
         let alone = chosen.weight.scale(factor / probability);
         if !a.kind().union(b.kind()).scatters {
-            return BsdfSample { weight: alone, ..chosen };
+            return BsdfSample {
+                weight: alone,
+                ..chosen
+            };
         }
-        let both = self.eval(d, a.eval(d, surface, wo, chosen.wi), b.eval(d, surface, wo, chosen.wi));
+        let both = self.eval(
+            d,
+            a.eval(d, surface, wo, chosen.wi),
+            b.eval(d, surface, wo, chosen.wi),
+        );
         let possible = d.lt(d.lit(0.0), both.pdf) & d.lt(d.lit(0.0), chosen.pdf);
         let inverse = one / d.select(possible, both.pdf, one);
         let together = both.value.scale(inverse).only(d, possible);
@@ -89,20 +100,28 @@ impl<A, B, W> Mix<A, B, W> {
         W: ScalarSource<D>,
     {
         let weight = self.weight.scalar(d, surface);
-        Blend { factor_a: d.lit(1.0) - weight, factor_b: weight, probability_b: weight }
+        Blend {
+            factor_a: d.lit(1.0) - weight,
+            factor_b: weight,
+            probability_b: weight,
+        }
     }
 }
 
 impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, W: ScalarSource<D>> Bsdf<D> for Mix<A, B, W> {
     #[inline(always)]
     fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D> {
-        let (a, b) = (self.a.eval(d, surface, wo, wi), self.b.eval(d, surface, wo, wi));
+        let (a, b) = (
+            self.a.eval(d, surface, wo, wi),
+            self.b.eval(d, surface, wo, wi),
+        );
         self.blend(d, surface).eval(d, a, b)
     }
 
     #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
-        self.blend(d, surface).sample(d, surface, wo, u, (&self.a, &self.b))
+        self.blend(d, surface)
+            .sample(d, surface, wo, u, (&self.a, &self.b))
     }
 
     #[inline(always)]
@@ -129,13 +148,17 @@ impl<A, B, P> Sum<A, B, P> {
 impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, P: ScalarSource<D>> Bsdf<D> for Sum<A, B, P> {
     #[inline(always)]
     fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D> {
-        let (a, b) = (self.a.eval(d, surface, wo, wi), self.b.eval(d, surface, wo, wi));
+        let (a, b) = (
+            self.a.eval(d, surface, wo, wi),
+            self.b.eval(d, surface, wo, wi),
+        );
         self.blend(d, surface).eval(d, a, b)
     }
 
     #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
-        self.blend(d, surface).sample(d, surface, wo, u, (&self.a, &self.b))
+        self.blend(d, surface)
+            .sample(d, surface, wo, u, (&self.a, &self.b))
     }
 
     #[inline(always)]

@@ -43,7 +43,11 @@ impl<C, I, K: Interface> Dielectric<C, I, K> {
     /// A dielectric with these sources.
     #[inline(always)]
     pub fn new(transmittance: C, ior: I, _: K) -> Self {
-        Self { transmittance, ior, interface: PhantomData }
+        Self {
+            transmittance,
+            ior,
+            interface: PhantomData,
+        }
     }
 }
 
@@ -65,7 +69,10 @@ pub fn fresnel<D: Domain>(d: D, cos: D::F, eta: D::F) -> (D::F, D::F) {
     let rs = q / (perpendicular * perpendicular);
     let rp = q * d.fma(eta2 + one, c2, -one) / (parallel * parallel);
     let reflectance = d.lit(0.5) * d.fma(rs, rs, rp * rp);
-    (d.select(total, one, d.min(reflectance, one)), d.select(total, d.lit(0.0), g))
+    (
+        d.select(total, one, d.min(reflectance, one)),
+        d.select(total, d.lit(0.0), g),
+    )
 }
 
 impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
@@ -77,24 +84,25 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
     }
 
     #[inline(always)]
-    fn sample(
-        &self,
-        d: D,
-        surface: &Surface<D>,
-        wo: Vec3<D::F>,
-        u: [D::F; 3],
-    ) -> BsdfSample<D> {
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         let one = d.lit(1.0);
         let ior = self.ior.scalar(d, surface);
         // A sheet is entered from either side.
-        let eta = if K::REFRACTS { d.select(surface.front, ior, one / ior) } else { ior };
+        let eta = if K::REFRACTS {
+            d.select(surface.front, ior, one / ior)
+        } else {
+            ior
+        };
         let (reflectance, g) = fresnel(d, wo.z, eta);
         let reflected = vec3(-wo.x, -wo.y, wo.z);
         let tint = self.transmittance.color(d, surface);
         let (transmitted, weight) = if K::REFRACTS {
             // Radiance is squeezed into a cone narrower by η² (Veach 1997, section 5.2).
             let scale = one / (eta * eta);
-            (vec3(-wo.x / eta, -wo.y / eta, -(g / eta)), tint.scale(scale))
+            (
+                vec3(-wo.x / eta, -wo.y / eta, -(g / eta)),
+                tint.scale(scale),
+            )
         } else {
             (-wo, tint)
         };
@@ -109,6 +117,10 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
 
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
-        BsdfKind { scatters: false, delta: true, transmits: true }
+        BsdfKind {
+            scatters: false,
+            delta: true,
+            transmits: true,
+        }
     }
 }

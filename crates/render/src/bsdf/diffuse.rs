@@ -38,7 +38,11 @@ impl<D: Domain, C: ColorSource<D>> Bsdf<D> for Diffuse<C> {
 
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
-        BsdfKind { scatters: true, delta: false, transmits: false }
+        BsdfKind {
+            scatters: true,
+            delta: false,
+            transmits: false,
+        }
     }
 }
 
@@ -65,6 +69,10 @@ impl<D: Domain> Bsdf<D> for Black {
 
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
-        BsdfKind { scatters: false, delta: false, transmits: false }
+        BsdfKind {
+            scatters: false,
+            delta: false,
+            transmits: false,
+        }
     }
 }

@@ -36,7 +36,8 @@ struct Coat<D: Domain> {
 impl<D: Domain> Coat<D> {
     #[inline(always)]
     fn fresnel(&self, d: D, cos: D::F) -> Color<D::F> {
-        self.reflectance.lerp(Vec3::splat(self.grazing), schlick_weight(d, cos))
+        self.reflectance
+            .lerp(Vec3::splat(self.grazing), schlick_weight(d, cos))
     }
 
     /// What the coat lets through, entering or leaving at this cosine.
@@ -68,12 +69,17 @@ impl<D: Domain> Coat<D> {
         let fresnel = self.fresnel(d, half_cosine(d, sum, h));
         let (coat, coat_pdf) = self.ggx.reflection(d, wo, wi, h);
         let cos = d.max(wi.z, d.lit(0.0));
-        let base = self.through(d, wo.z) * self.through(d, cos) / d.max(self.through_mean(d), d.lit(1e-6));
+        let base =
+            self.through(d, wo.z) * self.through(d, cos) / d.max(self.through_mean(d), d.lit(1e-6));
         let base = base * cos * d.lit(FRAC_1_PI);
         let p = self.coat_probability(d, wo);
         BsdfValue {
             value: fresnel.scale(coat) + self.albedo.scale(base),
-            pdf: d.fma(p, coat_pdf, (d.lit(1.0) - p) * cosine_hemisphere_pdf(d, cos)),
+            pdf: d.fma(
+                p,
+                coat_pdf,
+                (d.lit(1.0) - p) * cosine_hemisphere_pdf(d, cos),
+            ),
         }
     }
 }
@@ -110,13 +116,7 @@ where
     }
 
     #[inline(always)]
-    fn sample(
-        &self,
-        d: D,
-        surface: &Surface<D>,
-        wo: Vec3<D::F>,
-        u: [D::F; 3],
-    ) -> BsdfSample<D> {
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         let coat = self.coat(d, surface);
         let direction = [u[0], u[1]];
         let wi = d.branch(
@@ -137,6 +137,10 @@ where
 
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
-        BsdfKind { scatters: true, delta: false, transmits: false }
+        BsdfKind {
+            scatters: true,
+            delta: false,
+            transmits: false,
+        }
     }
 }

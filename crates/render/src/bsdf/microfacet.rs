@@ -25,7 +25,9 @@ impl<F: crate::domain::Real> Ggx<F> {
     /// From perceptual roughness in [0, 1]: α = roughness² (glTF 2.0, appendix B.2).
     #[inline(always)]
     pub fn from_roughness<D: Domain<F = F>>(d: D, roughness: F) -> Self {
-        Self { alpha: d.max(roughness * roughness, d.lit(MIN_ALPHA)) }
+        Self {
+            alpha: d.max(roughness * roughness, d.lit(MIN_ALPHA)),
+        }
     }
 
     /// Density of microfacet normals, per steradian, projected area normalised to 1.
@@ -47,19 +49,23 @@ impl<F: crate::domain::Real> Ggx<F> {
 
     /// A normal visible from `wo`.
     #[inline(always)]
-    pub fn sample_visible_normal<D: Domain<F = F>>(
-        &self,
-        d: D,
-        wo: Vec3<F>,
-        u: [F; 2],
-    ) -> Vec3<F> {
+    pub fn sample_visible_normal<D: Domain<F = F>>(&self, d: D, wo: Vec3<F>, u: [F; 2]) -> Vec3<F> {
         let one = d.lit(1.0);
         let stretched = vec3(wo.x * self.alpha, wo.y * self.alpha, wo.z).normalize(d);
         let (sin, cos) = sincos_turns(d, u[0]);
         let z = d.fma(one - u[1], one + stretched.z, -stretched.z);
         let r = d.sqrt(d.max(one - z * z, d.lit(0.0)));
-        let cap = vec3(d.fma(r, cos, stretched.x), d.fma(r, sin, stretched.y), z + stretched.z);
-        vec3(cap.x * self.alpha, cap.y * self.alpha, d.max(cap.z, d.lit(1e-9))).normalize_any(d)
+        let cap = vec3(
+            d.fma(r, cos, stretched.x),
+            d.fma(r, sin, stretched.y),
+            z + stretched.z,
+        );
+        vec3(
+            cap.x * self.alpha,
+            cap.y * self.alpha,
+            d.max(cap.z, d.lit(1e-9)),
+        )
+        .normalize_any(d)
     }
 
     /// Reflection by mirror-like facets: f·cos ÷ Fresnel, and the density of sampling by visible normals.
@@ -78,7 +84,10 @@ impl<F: crate::domain::Real> Ggx<F> {
         let common = self.distribution(d, h) / (d.lit(4.0) * d.max(wo.z, d.lit(1e-9)));
         let out = one + self.lambda(d, wo);
         let value = common / (out + self.lambda(d, wi));
-        (d.select(above, value, zero), d.select(above, common / out, zero))
+        (
+            d.select(above, value, zero),
+            d.select(above, common / out, zero),
+        )
     }
 
     /// G₂/G₁: the weight of a sampled reflection ÷ Fresnel.
@@ -134,17 +143,14 @@ impl<D: Domain, C: ColorSource<D>, R: ScalarSource<D>> Bsdf<D> for Conductor<C, 
         let (value, pdf) = ggx.reflection(d, wo, wi, h);
         let cos = half_cosine(d, sum, h);
         let fresnel = conductor_fresnel(d, self.color.color(d, surface), cos);
-        BsdfValue { value: fresnel.scale(value), pdf }
+        BsdfValue {
+            value: fresnel.scale(value),
+            pdf,
+        }
     }
 
     #[inline(always)]
-    fn sample(
-        &self,
-        d: D,
-        surface: &Surface<D>,
-        wo: Vec3<D::F>,
-        u: [D::F; 3],
-    ) -> BsdfSample<D> {
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         let ggx = Ggx::from_roughness(d, self.roughness.scalar(d, surface));
         let h = ggx.sample_visible_normal(d, wo, [u[0], u[1]]);
         let wi = reflect(d, wo, h);
@@ -160,6 +166,10 @@ impl<D: Domain, C: ColorSource<D>, R: ScalarSource<D>> Bsdf<D> for Conductor<C, 
 
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
-        BsdfKind { scatters: true, delta: false, transmits: false }
+        BsdfKind {
+            scatters: true,
+            delta: false,
+            transmits: false,
+        }
     }
 }

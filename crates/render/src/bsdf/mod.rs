@@ -21,7 +21,7 @@ pub use glossy::Glossy;
 pub use microfacet::Conductor;
 pub use phong::Phong;
 
-use crate::domain::{Bundle, Domain, choose_mask};
+use crate::domain::{Bundle, Domain};
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 
@@ -85,13 +85,19 @@ impl<D: Domain> BsdfValue<D> {
     /// Nothing.
     #[inline(always)]
     pub fn zero(d: D) -> Self {
-        Self { value: Vec3::splat(d.lit(0.0)), pdf: d.lit(0.0) }
+        Self {
+            value: Vec3::splat(d.lit(0.0)),
+            pdf: d.lit(0.0),
+        }
     }
 
     /// This value where the mask holds, else nothing.
     #[inline(always)]
     pub fn only(self, d: D, mask: D::M) -> Self {
-        Self { value: self.value.only(d, mask), pdf: d.select(mask, self.pdf, d.lit(0.0)) }
+        Self {
+            value: self.value.only(d, mask),
+            pdf: d.select(mask, self.pdf, d.lit(0.0)),
+        }
     }
 }
 
@@ -102,7 +108,7 @@ impl<D: Domain> Bundle<D> for BsdfSample<D> {
             wi: Vec3::choose(d, mask, a.wi, b.wi),
             weight: Vec3::choose(d, mask, a.weight, b.weight),
             pdf: d.select(mask, a.pdf, b.pdf),
-            delta: choose_mask(d, mask, a.delta, b.delta),
+            delta: d.select_mask(mask, a.delta, b.delta),
         }
     }
 }

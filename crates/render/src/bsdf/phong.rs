@@ -26,18 +26,15 @@ impl<D: Domain, C: ColorSource<D>, E: ScalarSource<D>> Bsdf<D> for Phong<C, E> {
         let lobe = pow(d, cos, n) * d.lit(0.5 * std::f64::consts::FRAC_1_PI);
         let value = lobe * (n + d.lit(2.0)) * wi.z;
         let pdf = lobe * (n + d.lit(1.0));
-        BsdfValue { value: self.color.color(d, surface).scale(value), pdf }
-            .only(d, d.lt(d.lit(0.0), wi.z))
+        BsdfValue {
+            value: self.color.color(d, surface).scale(value),
+            pdf,
+        }
+        .only(d, d.lt(d.lit(0.0), wi.z))
     }
 
     #[inline(always)]
-    fn sample(
-        &self,
-        d: D,
-        surface: &Surface<D>,
-        wo: Vec3<D::F>,
-        u: [D::F; 3],
-    ) -> BsdfSample<D> {
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         let n = self.exponent.scalar(d, surface);
         let one = d.lit(1.0);
         let cos = pow(d, one - u[0], one / (n + one));
@@ -58,6 +55,10 @@ impl<D: Domain, C: ColorSource<D>, E: ScalarSource<D>> Bsdf<D> for Phong<C, E> {
 
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
-        BsdfKind { scatters: true, delta: false, transmits: false }
+        BsdfKind {
+            scatters: true,
+            delta: false,
+            transmits: false,
+        }
     }
 }

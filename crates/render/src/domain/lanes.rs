@@ -1,8 +1,8 @@
 //! `f32` in SIMD lanes: 4, 8 or 16 paths at once, on whatever instruction set the token stands for.
 
 use fearless_simd::{
-    Bytes, Select, Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask, f32x4, f32x8,
-    f32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
+    Bytes, Select, Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask, f32x4,
+    f32x8, f32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
 };
 
 use super::scalar::Uint;

@@ -76,10 +76,7 @@ impl<T> Unsigned for T where
 }
 
 /// A truth value of a domain.
-pub trait Mask:
-    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
-{
-}
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
 impl<T> Mask for T where T: Copy + BitAnd<Output = T> + BitOr<Output = T> + Not<Output = T> {}
 
 /// The buffers a formula can read. Each is an array of 32-bit words; see `scene` for their layouts.
@@ -161,7 +158,9 @@ impl<'a> Buffers<'a> {
     }
 
     /// No data at all: every read gives 0. For formulas that read nothing.
-    pub const EMPTY: Buffers<'static> = Buffers { words: [&[]; Buffer::COUNT] };
+    pub const EMPTY: Buffers<'static> = Buffers {
+        words: [&[]; Buffer::COUNT],
+    };
 
     /// The words of one buffer.
     #[inline(always)]
@@ -222,6 +221,11 @@ pub trait Domain: Copy {
     fn select(self, mask: Self::M, a: Self::F, b: Self::F) -> Self::F;
     /// `a` where the mask holds, else `b`.
     fn select_u(self, mask: Self::M, a: Self::U, b: Self::U) -> Self::U;
+    /// `a` where the mask holds, else `b`.
+    #[inline(always)]
+    fn select_mask(self, mask: Self::M, a: Self::M, b: Self::M) -> Self::M {
+        (mask & a) | (!mask & b)
+    }
 
     /// Truncation towards zero, for 0 ≤ a < 2³²; anything else is unspecified.
     fn to_uint(self, a: Self::F) -> Self::U;
@@ -230,6 +234,10 @@ pub trait Domain: Copy {
     /// The bits of the number as an `f32`.
     fn to_bits(self, a: Self::F) -> Self::U;
     /// The number whose bits as an `f32` these are.
+    #[expect(
+        clippy::wrong_self_convention,
+        reason = "`self` is the domain, not the number"
+    )]
     fn from_bits(self, a: Self::U) -> Self::F;
 
     /// One word of a buffer.
@@ -285,10 +293,4 @@ impl<D: Domain> Bundle<D> for One<D::F> {
     fn choose(d: D, mask: D::M, a: Self, b: Self) -> Self {
         One(d.select(mask, a.0, b.0))
     }
-}
-
-/// Truth values have no select of their own: `(mask ∧ a) ∨ (¬mask ∧ b)`.
-#[inline(always)]
-pub fn choose_mask<D: Domain>(_: D, mask: D::M, a: D::M, b: D::M) -> D::M {
-    (mask & a) | (!mask & b)
 }

@@ -32,7 +32,13 @@ impl<D: Domain, E: ColorSource<D>> LightKind<D> for Area<E> {
         let safe = d.select(faces, solid_angle, d.lit(1.0));
         LightSample {
             wi: towards.scale(d.lit(1.0) / distance),
-            position: offset_point(d, there.point, there.error, there.geometric_normal, -towards),
+            position: offset_point(
+                d,
+                there.point,
+                there.error,
+                there.geometric_normal,
+                -towards,
+            ),
             infinite: d.truth(false),
             radiance: self.emission.color(d, &there).only(d, emits & faces),
             pdf: distance * distance / safe,

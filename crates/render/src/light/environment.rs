@@ -45,13 +45,20 @@ fn to_direction<D: Domain>(d: D, [u, v]: [D::F; 2]) -> (Vec3<D::F>, D::F) {
     let (sin_phi, cos_phi) = sincos_turns(d, u - d.lit(0.5));
     let (sin_theta, cos_theta) = sincos_turns(d, v * d.lit(0.5));
     let (x, z) = (sin_theta * cos_phi, sin_theta * sin_phi);
-    (vec3(d.fma(x, cos, z * sin), cos_theta, z * cos - x * sin), sin_theta)
+    (
+        vec3(d.fma(x, cos, z * sin), cos_theta, z * cos - x * sin),
+        sin_theta,
+    )
 }
 
 #[inline(always)]
 fn size<D: Domain>(d: D) -> (D::U, D::F, D::F) {
     let width = d.uniform(Buffer::Environment, 0);
-    (width, d.to_real(width), d.to_real(d.uniform(Buffer::Environment, 1)))
+    (
+        width,
+        d.to_real(width),
+        d.to_real(d.uniform(Buffer::Environment, 1)),
+    )
 }
 
 #[inline(always)]
@@ -63,7 +70,8 @@ fn radiance<D: Domain>(d: D, [u, v]: [D::F; 2]) -> Color<D::F> {
         let y = d.to_uint(Clamp.wrap(d, y, rows));
         LinearFloat.color(d, first + (y * width + x) * d.uint(LinearFloat.words()))
     };
-    Bilinear.filter(d, u * columns, v * rows, texel, |a, b, t| a.lerp(b, t))
+    Bilinear
+        .filter(d, u * columns, v * rows, texel, |a, b, t| a.lerp(b, t))
         .scale(d.uniform_real(Buffer::Environment, 3))
 }
 
@@ -81,15 +89,20 @@ impl<D: Domain> LightKind<D> for Environment {
         let (width, columns, rows) = size(d);
         let one = d.lit(1.0);
         let (x, y) = (u[0] * columns, u[1] * rows);
-        let (column, row) =
-            (d.min(d.floor(x), columns - one), d.min(d.floor(y), rows - one));
+        let (column, row) = (
+            d.min(d.floor(x), columns - one),
+            d.min(d.floor(y), rows - one),
+        );
         let slot = d.to_uint(row) * width + d.to_uint(column);
         let texel = resolve_alias(d, Buffer::Environment, HEADER, slot, u[2]);
         // texel = row·width + column; the quotient is exact enough below 2²⁴ texels and then put right.
         let row = d.to_real(texel) / columns;
         let row = d.min(d.floor(d.fma(d.lit(0.5), one / columns, row)), rows - one);
         let column = d.to_real(texel - d.to_uint(row) * width);
-        let place = [(column + (x - d.floor(x))) / columns, (row + (y - d.floor(y))) / rows];
+        let place = [
+            (column + (x - d.floor(x))) / columns,
+            (row + (y - d.floor(y))) / rows,
+        ];
         let (wi, sin_theta) = to_direction(d, place);
         LightSample {
             wi,

@@ -15,7 +15,7 @@ pub use area::{Area, pdf as area_pdf};
 pub use environment::Environment;
 pub use punctual::{Directional, Point, Spot};
 
-use crate::domain::{Buffer, Bundle, Domain, choose_mask};
+use crate::domain::{Buffer, Bundle, Domain};
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 
@@ -49,10 +49,10 @@ impl<D: Domain> Bundle<D> for LightSample<D> {
         Self {
             wi: Vec3::choose(d, mask, a.wi, b.wi),
             position: Vec3::choose(d, mask, a.position, b.position),
-            infinite: choose_mask(d, mask, a.infinite, b.infinite),
+            infinite: d.select_mask(mask, a.infinite, b.infinite),
             radiance: Vec3::choose(d, mask, a.radiance, b.radiance),
             pdf: d.select(mask, a.pdf, b.pdf),
-            delta: choose_mask(d, mask, a.delta, b.delta),
+            delta: d.select_mask(mask, a.delta, b.delta),
         }
     }
 }
@@ -91,7 +91,10 @@ impl<U: crate::domain::Unsigned> KindNumber<U> {
     }
     #[inline(always)]
     fn in_rest(self) -> Self {
-        Self { first: self.first + 1, ..self }
+        Self {
+            first: self.first + 1,
+            ..self
+        }
     }
 }
 
@@ -168,7 +171,9 @@ impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
     }
     #[inline(always)]
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
-        self.0.background(d, dir).or_else(|| self.1.background(d, dir))
+        self.0
+            .background(d, dir)
+            .or_else(|| self.1.background(d, dir))
     }
 }
 
@@ -200,6 +205,34 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
     }
 }
 
+/// A picked light.
+#[derive(Clone, Copy, Debug)]
+pub struct Pick<D: Domain> {
+    /// The number of its kind.
+    pub kind: D::U,
+    /// First word of its record.
+    pub record: D::U,
+    /// The probability of the pick.
+    pub probability: D::F,
+}
+
+/// Picks a light.
+#[inline(always)]
+pub fn pick<D: Domain>(d: D, u: D::F) -> Pick<D> {
+    let count = d.to_real(d.uniform(Buffer::LightAlias, 0));
+    let place = u * count;
+    let slot = d.min(d.floor(place), count - d.lit(1.0));
+    let light = resolve_alias(d, Buffer::LightAlias, 1, d.to_uint(slot), place - slot);
+    let entry = light * d.uint(ALIAS_ENTRY) + d.uint(1);
+    let probability = d.load_real(Buffer::LightAlias, entry + d.uint(2));
+    let record = light * d.uint(RECORD);
+    Pick {
+        kind: d.load(Buffer::Lights, record),
+        record,
+        probability,
+    }
+}
+
 /// Picks a light with `u[0]` and samples it with the other three numbers. The density includes the pick.
 #[inline(always)]
 pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
@@ -208,17 +241,23 @@ pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
     from: &Surface<D>,
     u: [D::F; 4],
 ) -> LightSample<D> {
-    let count = d.to_real(d.uniform(Buffer::LightAlias, 0));
-    let place = u[0] * count;
-    let slot = d.min(d.floor(place), count - d.lit(1.0));
-    let light = resolve_alias(d, Buffer::LightAlias, 1, d.to_uint(slot), place - slot);
-    let entry = light * d.uint(ALIAS_ENTRY) + d.uint(1);
-    let probability = d.load_real(Buffer::LightAlias, entry + d.uint(2));
-    let record = light * d.uint(RECORD);
-    let kind = d.load(Buffer::Lights, record);
-    let sample = lights.sample(d, KindNumber { kind, first: 0 }, record, from, [u[1], u[2], u[3]]);
+    let Pick {
+        kind,
+        record,
+        probability,
+    } = pick(d, u[0]);
+    let sample = lights.sample(
+        d,
+        KindNumber { kind, first: 0 },
+        record,
+        from,
+        [u[1], u[2], u[3]],
+    );
     // A delta light's "density" of 1 turns into the probability of its pick; the estimator is the same.
-    LightSample { pdf: sample.pdf * probability, ..sample }
+    LightSample {
+        pdf: sample.pdf * probability,
+        ..sample
+    }
 }
 
 /// The probability of picking a light.

@@ -52,7 +52,10 @@ impl<D: Domain> LightKind<D> for Spot {
         let scale = d.load_real(Buffer::Lights, record + d.uint(10));
         let offset = d.load_real(Buffer::Lights, record + d.uint(11));
         let falloff = d.min(d.max(d.fma(cos, scale, offset), d.lit(0.0)), d.lit(1.0));
-        LightSample { radiance: everywhere.radiance.scale(falloff * falloff), ..everywhere }
+        LightSample {
+            radiance: everywhere.radiance.scale(falloff * falloff),
+            ..everywhere
+        }
     }
 }
 

@@ -16,12 +16,19 @@ pub fn sincos_turns<D: Domain>(d: D, u: D::F) -> (D::F, D::F) {
     let p = d.fma(d.lit(-1.951_529_589_1e-4), z, d.lit(8.332_160_873_6e-3));
     let p = d.fma(p, z, d.lit(-1.666_665_461_1e-1));
     let sin = d.fma(p * z, x, x);
-    let q = d.fma(d.lit(2.443_315_711_809_948e-5), z, d.lit(-1.388_731_625_493_765e-3));
+    let q = d.fma(
+        d.lit(2.443_315_711_809_948e-5),
+        z,
+        d.lit(-1.388_731_625_493_765e-3),
+    );
     let q = d.fma(q, z, d.lit(4.166_664_568_298_827e-2));
     let cos = d.fma(q * z, z, d.fma(z, d.lit(-0.5), d.lit(1.0)));
     // The quarter, modulo 4, as a number in {0, 1, 2, 3}.
     let quarter = quarter - d.floor(quarter * d.lit(0.25)) * d.lit(4.0);
-    let odd = d.eq(quarter - d.floor(quarter * d.lit(0.5)) * d.lit(2.0), d.lit(1.0));
+    let odd = d.eq(
+        quarter - d.floor(quarter * d.lit(0.5)) * d.lit(2.0),
+        d.lit(1.0),
+    );
     let (s, c) = (d.select(odd, cos, sin), d.select(odd, sin, cos));
     let s_negative = d.le(d.lit(2.0), quarter);
     let c_negative = d.eq(quarter, d.lit(1.0)) | d.eq(quarter, d.lit(2.0));

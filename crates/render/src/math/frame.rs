@@ -31,7 +31,11 @@ impl<F: crate::domain::Real> Frame<F> {
     /// World to local.
     #[inline(always)]
     pub fn to_local<D: Domain<F = F>>(&self, d: D, v: Vec3<F>) -> Vec3<F> {
-        vec3(v.dot(d, self.tangent), v.dot(d, self.bitangent), v.dot(d, self.normal))
+        vec3(
+            v.dot(d, self.tangent),
+            v.dot(d, self.bitangent),
+            v.dot(d, self.normal),
+        )
     }
 
     /// Local to world.

@@ -139,6 +139,10 @@ impl<F: Real> Neg for Vec3<F> {
 impl<D: Domain> Bundle<D> for Vec3<D::F> {
     #[inline(always)]
     fn choose(d: D, mask: D::M, a: Self, b: Self) -> Self {
-        vec3(d.select(mask, a.x, b.x), d.select(mask, a.y, b.y), d.select(mask, a.z, b.z))
+        vec3(
+            d.select(mask, a.x, b.x),
+            d.select(mask, a.y, b.y),
+            d.select(mask, a.z, b.z),
+        )
     }
 }

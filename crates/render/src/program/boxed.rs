@@ -1,6 +1,7 @@
 //! Material programs as boxed nodes, over any domain.
 
-use super::{BsdfNode, ColorNode, NormalNode, Program, ScalarNode, SourceNode};
+use super::{AlphaNode, BsdfNode, ColorNode, NormalNode, Program, ScalarNode, SourceNode};
+use crate::alpha::{AlphaTest, covers};
 use crate::bsdf::{
     Black, Bsdf, BsdfKind, BsdfSample, BsdfValue, Conductor, Dielectric, Diffuse, Glossy, Mix,
     Phong, Solid, Sum, Thin,
@@ -8,7 +9,7 @@ use crate::bsdf::{
 use crate::domain::Domain;
 use crate::material::{Material, Shading, decode_normal, front_only};
 use crate::math::{Color, Vec3};
-use crate::surface::{Attributes, MAX_INPUTS, Surface};
+use crate::surface::{Attributes, Hit, MAX_INPUTS, Surface};
 use crate::texture::{ColorSource, Const, Gray, Param, Product, ScalarSource, VertexColor};
 
 /// A node behind a vtable: entering it re-establishes the domain's instruction set.
@@ -104,25 +105,47 @@ fn bsdf<'a, D: Domain + 'a>(node: &BsdfNode) -> BoxedBsdf<'a, D> {
     match *node {
         BsdfNode::Black => Box::new(Node(Black)),
         BsdfNode::Diffuse { albedo } => Box::new(Node(Diffuse { albedo })),
-        BsdfNode::Conductor { color, roughness } => {
-            Box::new(Node(Conductor { color, roughness }))
-        }
-        BsdfNode::Glossy { albedo, roughness, reflectance, grazing } => {
-            Box::new(Node(Glossy { albedo, roughness, reflectance, grazing }))
-        }
-        BsdfNode::Dielectric { transmittance, ior, solid: true } => {
-            Box::new(Node(Dielectric::new(transmittance, ior, Solid)))
-        }
-        BsdfNode::Dielectric { transmittance, ior, solid: false } => {
-            Box::new(Node(Dielectric::new(transmittance, ior, Thin)))
-        }
+        BsdfNode::Conductor { color, roughness } => Box::new(Node(Conductor { color, roughness })),
+        BsdfNode::Glossy {
+            albedo,
+            roughness,
+            reflectance,
+            grazing,
+        } => Box::new(Node(Glossy {
+            albedo,
+            roughness,
+            reflectance,
+            grazing,
+        })),
+        BsdfNode::Dielectric {
+            transmittance,
+            ior,
+            solid: true,
+        } => Box::new(Node(Dielectric::new(transmittance, ior, Solid))),
+        BsdfNode::Dielectric {
+            transmittance,
+            ior,
+            solid: false,
+        } => Box::new(Node(Dielectric::new(transmittance, ior, Thin))),
         BsdfNode::Phong { color, exponent } => Box::new(Node(Phong { color, exponent })),
-        BsdfNode::Mix { ref a, ref b, weight } => {
-            Box::new(Node(Mix { a: bsdf::<D>(a), b: bsdf::<D>(b), weight }))
-        }
-        BsdfNode::Sum { ref a, ref b, probability } => {
-            Box::new(Node(Sum { a: bsdf::<D>(a), b: bsdf::<D>(b), probability }))
-        }
+        BsdfNode::Mix {
+            ref a,
+            ref b,
+            weight,
+        } => Box::new(Node(Mix {
+            a: bsdf::<D>(a),
+            b: bsdf::<D>(b),
+            weight,
+        })),
+        BsdfNode::Sum {
+            ref a,
+            ref b,
+            probability,
+        } => Box::new(Node(Sum {
+            a: bsdf::<D>(a),
+            b: bsdf::<D>(b),
+            probability,
+        })),
     }
 }
 
@@ -146,7 +169,10 @@ impl<'a, D: Domain + 'a> BoxedMaterial<'a, D> {
     /// # Panics
     /// If the program has more than [`MAX_INPUTS`] inputs, which no plan makes.
     pub fn new(program: &Program) -> Self {
-        assert!(program.inputs.len() <= MAX_INPUTS, "a program has at most {MAX_INPUTS} inputs");
+        assert!(
+            program.inputs.len() <= MAX_INPUTS,
+            "a program has at most {MAX_INPUTS} inputs"
+        );
         let inputs = program.inputs.iter().map(|input| match &input.source {
             SourceNode::Color(node) => BoxedInput::Color(color(node)),
             SourceNode::Scalar(node) => BoxedInput::Scalar(scalar(node)),
@@ -190,9 +216,16 @@ impl<D: Domain> Material<D> for BoxedMaterial<'_, D> {
         }
         let emission = self.emission.map(|emission| {
             let radiance = emission.radiance.color(d, surface);
-            if emission.double_sided { radiance } else { front_only(d, surface, radiance) }
+            if emission.double_sided {
+                radiance
+            } else {
+                front_only(d, surface, radiance)
+            }
         });
-        Shading { emission, bsdf: &*self.bsdf }
+        Shading {
+            emission,
+            bsdf: &*self.bsdf,
+        }
     }
 }
 
@@ -208,5 +241,31 @@ impl<'a, D: Domain> Bsdf<D> for &'a (dyn Bsdf<D> + Send + Sync + 'a) {
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
         (**self).kind()
+    }
+}
+
+/// The alpha of a material program as boxed nodes.
+pub struct BoxedAlpha<'a, D> {
+    pub(super) attributes: Attributes,
+    pub(super) alpha: BoxedScalar<'a, D>,
+    pub(super) test: AlphaTest<BoxedScalar<'a, D>>,
+}
+
+impl<'a, D: Domain + 'a> BoxedAlpha<'a, D> {
+    /// Builds the nodes of a program's alpha.
+    pub fn new(node: &AlphaNode) -> Self {
+        Self {
+            attributes: node.attributes,
+            alpha: scalar(&node.alpha),
+            test: match &node.test {
+                AlphaTest::Mask(cutoff) => AlphaTest::Mask(scalar(cutoff)),
+                AlphaTest::Blend => AlphaTest::Blend,
+            },
+        }
+    }
+
+    /// Whether the surface is there for this hit of a ray, given by origin and direction.
+    pub fn covers(&self, d: D, ray: [Vec3<D::F>; 2], hit: &Hit<D>) -> D::M {
+        covers(d, self.attributes, &self.alpha, &self.test, ray, hit)
     }
 }

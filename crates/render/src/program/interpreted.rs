@@ -2,27 +2,20 @@
 
 use residual_bvh::{Culling, Hit, HitFilter, Ray};
 
-use super::boxed::{self, BoxedMaterial, BoxedScalar};
+use super::boxed::{self, BoxedAlpha, BoxedMaterial};
 use super::{LightNode, Structure};
-use crate::alpha::{AlphaTest, is_there};
+use crate::alpha::is_there;
 use crate::camera::AnyCamera;
 use crate::domain::{Buffer, Buffers, Domain, Scalar};
 use crate::light::{Area, Directional, Environment, LightKind, Point, Spot};
 use crate::sampler::AnySampler;
 use crate::scene::{MaterialVisitor, Scene};
-use crate::surface::Attributes;
-
-struct BoxedAlpha<'a> {
-    attributes: Attributes,
-    alpha: BoxedScalar<'a, Scalar<'a>>,
-    test: AlphaTest<BoxedScalar<'a, Scalar<'a>>>,
-}
 
 /// A scene as boxed nodes over a domain.
 pub struct Interpreted<'a, D: Domain> {
     buffers: &'a Buffers<'a>,
     materials: Vec<BoxedMaterial<'a, D>>,
-    alphas: Vec<Option<BoxedAlpha<'a>>>,
+    alphas: Vec<Option<BoxedAlpha<'a, Scalar<'a>>>>,
     lights: Vec<Box<dyn LightKind<D> + Send + Sync + 'a>>,
     camera: AnyCamera,
     sampler: AnySampler,
@@ -33,25 +26,23 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
     pub fn new(structure: &Structure, buffers: &'a Buffers<'a>) -> Self {
         let light = |node: &LightNode| -> Box<dyn LightKind<D> + Send + Sync + 'a> {
             match node {
-                LightNode::Area { emission, attributes } => {
-                    Box::new(Area { emission: boxed::color(emission), attributes: *attributes })
-                }
+                LightNode::Area {
+                    emission,
+                    attributes,
+                } => Box::new(Area {
+                    emission: boxed::color(emission),
+                    attributes: *attributes,
+                }),
                 LightNode::Point => Box::new(Point),
                 LightNode::Spot => Box::new(Spot),
                 LightNode::Directional => Box::new(Directional),
                 LightNode::Environment => Box::new(Environment),
             }
         };
-        let alphas = structure.programs.iter().map(|program| {
-            program.alpha.as_ref().map(|node| BoxedAlpha {
-                attributes: node.attributes,
-                alpha: boxed::scalar(&node.alpha),
-                test: match &node.test {
-                    AlphaTest::Mask(cutoff) => AlphaTest::Mask(boxed::scalar(cutoff)),
-                    AlphaTest::Blend => AlphaTest::Blend,
-                },
-            })
-        });
+        let alphas = structure
+            .programs
+            .iter()
+            .map(|program| program.alpha.as_ref().map(BoxedAlpha::new));
         Self {
             buffers,
             materials: structure.programs.iter().map(BoxedMaterial::new).collect(),
@@ -72,9 +63,14 @@ impl<D: Domain> HitFilter for Interpreted<'_, D> {
     fn accept(&self, ray: &Ray, hit: &Hit) -> bool {
         let program = self.buffers.word(Buffer::TrianglePrograms, hit.prim) as usize;
         match &self.alphas[program] {
-            Some(alpha) => {
-                is_there(self.buffers, alpha.attributes, &alpha.alpha, &alpha.test, ray, hit)
-            }
+            Some(alpha) => is_there(
+                self.buffers,
+                alpha.attributes,
+                &alpha.alpha,
+                &alpha.test,
+                ray,
+                hit,
+            ),
             None => true,
         }
     }

@@ -3,7 +3,7 @@
 mod boxed;
 mod interpreted;
 
-pub use boxed::BoxedMaterial;
+pub use boxed::{BoxedAlpha, BoxedMaterial};
 pub use interpreted::Interpreted;
 
 pub use residual_bvh::Culling;
@@ -72,13 +72,38 @@ pub enum SourceNode {
 #[expect(missing_docs, reason = "the fields are those of the types in `bsdf`")]
 pub enum BsdfNode {
     Black,
-    Diffuse { albedo: Input },
-    Conductor { color: Input, roughness: Input },
-    Glossy { albedo: Input, roughness: Input, reflectance: Input, grazing: Input },
-    Dielectric { transmittance: Input, ior: Input, solid: bool },
-    Phong { color: Input, exponent: Input },
-    Mix { a: Box<BsdfNode>, b: Box<BsdfNode>, weight: Input },
-    Sum { a: Box<BsdfNode>, b: Box<BsdfNode>, probability: Input },
+    Diffuse {
+        albedo: Input,
+    },
+    Conductor {
+        color: Input,
+        roughness: Input,
+    },
+    Glossy {
+        albedo: Input,
+        roughness: Input,
+        reflectance: Input,
+        grazing: Input,
+    },
+    Dielectric {
+        transmittance: Input,
+        ior: Input,
+        solid: bool,
+    },
+    Phong {
+        color: Input,
+        exponent: Input,
+    },
+    Mix {
+        a: Box<BsdfNode>,
+        b: Box<BsdfNode>,
+        weight: Input,
+    },
+    Sum {
+        a: Box<BsdfNode>,
+        b: Box<BsdfNode>,
+        probability: Input,
+    },
 }
 
 /// Emission of a program.
@@ -131,7 +156,10 @@ pub struct Program {
 #[derive(Clone, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the fields are those of the types in `light`")]
 pub enum LightNode {
-    Area { emission: ColorNode, attributes: Attributes },
+    Area {
+        emission: ColorNode,
+        attributes: Attributes,
+    },
     Point,
     Spot,
     Directional,

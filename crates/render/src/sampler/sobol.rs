@@ -44,9 +44,8 @@ fn owen<D: Domain>(d: D, x: D::U, seed: D::U) -> D::U {
 
 #[inline(always)]
 fn reverse_bits<D: Domain>(d: D, x: D::U) -> D::U {
-    let swap = |x: D::U, by: u32, mask: u32| {
-        ((x >> by) & d.uint(mask)) | ((x & d.uint(mask)) << by)
-    };
+    let swap =
+        |x: D::U, by: u32, mask: u32| ((x >> by) & d.uint(mask)) | ((x & d.uint(mask)) << by);
     let x = swap(x, 1, 0x5555_5555);
     let x = swap(x, 2, 0x3333_3333);
     let x = swap(x, 4, 0x0f0f_0f0f);

@@ -121,7 +121,11 @@ impl TexelFormat for SrgbRgba8 {
     #[inline(always)]
     fn channel<D: Domain>(&self, d: D, word: D::U, channel: u32) -> D::F {
         let texel = d.load(Buffer::Texels, word);
-        if channel == 3 { unorm(d, texel, 3) } else { srgb::decode(d, byte(d, texel, channel)) }
+        if channel == 3 {
+            unorm(d, texel, 3)
+        } else {
+            srgb::decode(d, byte(d, texel, channel))
+        }
     }
 }
 impl TexelFormat for LinearRgba8 {
@@ -341,7 +345,12 @@ impl<D: Domain, U: Wrapping, V: Wrapping, F: Filtering, T: TexelFormat> ColorSou
 {
     #[inline(always)]
     fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F> {
-        self.sample(d, surface, |word| self.format.color(d, word), |a, b, t| a.lerp(b, t))
+        self.sample(
+            d,
+            surface,
+            |word| self.format.color(d, word),
+            |a, b, t| a.lerp(b, t),
+        )
     }
 }
 

@@ -8,8 +8,8 @@ mod image;
 mod srgb;
 
 pub use image::{
-    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8, Mirror,
-    Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
+    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8,
+    Mirror, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
 };
 pub use srgb::srgb_table;
 
@@ -54,8 +54,8 @@ pub struct Param(pub u32);
 impl<D: Domain> ColorSource<D> for Param {
     #[inline(always)]
     fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F> {
-        let [r, g, b] = [0, 1, 2]
-            .map(|k| d.load_real(Buffer::Params, surface.params + d.uint(self.0 + k)));
+        let [r, g, b] =
+            [0, 1, 2].map(|k| d.load_real(Buffer::Params, surface.params + d.uint(self.0 + k)));
         vec3(r, g, b)
     }
 }

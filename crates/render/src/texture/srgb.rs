@@ -6,7 +6,11 @@ use crate::domain::{Buffer, Domain};
 pub fn srgb_table() -> [f32; 256] {
     std::array::from_fn(|code| {
         let c = code as f64 / 255.0;
-        let linear = if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+        let linear = if c <= 0.04045 {
+            c / 12.92
+        } else {
+            ((c + 0.055) / 1.055).powf(2.4)
+        };
         linear as f32
     })
 }

@@ -85,8 +85,7 @@ pub trait Tracer<D: Domain> {
     ) -> Color<D::F>;
 
     /// The contribution of what a ray that hit nothing sees.
-    fn on_miss<L: LightKinds<D> + ?Sized>(&self, d: D, path: &Path<D>, lights: &L)
-    -> Color<D::F>;
+    fn on_miss<L: LightKinds<D> + ?Sized>(&self, d: D, path: &Path<D>, lights: &L) -> Color<D::F>;
 
     /// Light that arrives at the vertex directly.
     fn on_shadow<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
@@ -98,10 +97,5 @@ pub trait Tracer<D: Domain> {
     ) -> Shadow<D>;
 
     /// The way on from the vertex.
-    fn on_bounce<B: Bsdf<D>>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-    ) -> Bounce<D>;
+    fn on_bounce<B: Bsdf<D>>(&self, d: D, path: &Path<D>, vertex: &Vertex<'_, D, B>) -> Bounce<D>;
 }

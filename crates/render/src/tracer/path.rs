@@ -34,18 +34,14 @@ impl<S> PathTracer<S> {
     where
         S: Sampler<D>,
     {
-        self.sampler.pair(d, key, depth * d.uint(PAIRS) + d.uint(pair))
+        self.sampler
+            .pair(d, key, depth * d.uint(PAIRS) + d.uint(pair))
     }
 }
 
 /// A direction is on the same side of the geometric and of the shading surface.
 #[inline(always)]
-fn consistent<D: Domain>(
-    d: D,
-    surface: &Surface<D>,
-    world: Vec3<D::F>,
-    local: Vec3<D::F>,
-) -> D::M {
+fn consistent<D: Domain>(d: D, surface: &Surface<D>, world: Vec3<D::F>, local: Vec3<D::F>) -> D::M {
     d.lt(d.lit(0.0), surface.geometric_normal.dot(d, world) * local.z)
 }
 
@@ -89,16 +85,9 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<S> {
     }
 
     #[inline(always)]
-    fn on_miss<L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        lights: &L,
-    ) -> Color<D::F> {
+    fn on_miss<L: LightKinds<D> + ?Sized>(&self, d: D, path: &Path<D>, lights: &L) -> Color<D::F> {
         match lights.background(d, path.ray.dir) {
-            Some(seen) => {
-                path.throughput * seen.radiance.scale(bsdf_weight(d, path.pdf, seen.pdf))
-            }
+            Some(seen) => path.throughput * seen.radiance.scale(bsdf_weight(d, path.pdf, seen.pdf)),
             None => Vec3::splat(d.lit(0.0)),
         }
     }
@@ -144,12 +133,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<S> {
     }
 
     #[inline(always)]
-    fn on_bounce<B: Bsdf<D>>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-    ) -> Bounce<D> {
+    fn on_bounce<B: Bsdf<D>>(&self, d: D, path: &Path<D>, vertex: &Vertex<'_, D, B>) -> Bounce<D> {
         let Vertex { surface, bsdf, .. } = *vertex;
         let direction = self.pair(d, path.key, vertex.depth, BSDF_DIRECTION);
         let [lobe, roulette] = self.pair(d, path.key, vertex.depth, LOBE_AND_ROULETTE);

@@ -52,15 +52,26 @@ impl Worst {
     pub(crate) fn add(&mut self, error: f64, place: impl FnOnce() -> String) {
         let error = if error.is_nan() { f64::INFINITY } else { error };
         if error > self.error {
-            *self = Self { error, place: place() };
+            *self = Self {
+                error,
+                place: place(),
+            };
         }
     }
 
     /// Panics if the bound does not hold; prints what was measured.
     #[track_caller]
     pub(crate) fn assert_below(&self, bound: f64, what: &str) {
-        println!("{what}: {:.3e} at {} (bound {bound:.1e})", self.error, self.place);
-        assert!(self.error <= bound, "{what}: {:.3e} > {bound:.1e} at {}", self.error, self.place);
+        println!(
+            "{what}: {:.3e} at {} (bound {bound:.1e})",
+            self.error, self.place
+        );
+        assert!(
+            self.error <= bound,
+            "{what}: {:.3e} > {bound:.1e} at {}",
+            self.error,
+            self.place
+        );
     }
 }
 

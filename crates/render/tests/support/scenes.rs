@@ -45,15 +45,26 @@ pub(crate) fn set_lights(data: &mut SceneData, records: &[Vec<u32>], weights: &[
     let alias = data.buffer_mut(Buffer::LightAlias);
     *alias = vec![records.len() as u32];
     for ((threshold, other), weight) in alias_table(weights).into_iter().zip(weights) {
-        alias.extend([threshold.to_bits(), other, ((weight / total) as f32).to_bits()]);
+        alias.extend([
+            threshold.to_bits(),
+            other,
+            ((weight / total) as f32).to_bits(),
+        ]);
     }
     assert_eq!(alias.len(), 1 + records.len() * ALIAS_ENTRY as usize);
 }
 
 /// An environment image of `width` columns, rotated about +Y, as light number 0 among the texels from word 0.
-pub(crate) fn set_environment(data: &mut SceneData, width: usize, texels: &[[f32; 3]], rotation: f64) {
+pub(crate) fn set_environment(
+    data: &mut SceneData,
+    width: usize,
+    texels: &[[f32; 3]],
+    rotation: f64,
+) {
     let height = texels.len() / width;
-    let words = texels.iter().flat_map(|[r, g, b]| reals(&[*r, *g, *b, 1.0]));
+    let words = texels
+        .iter()
+        .flat_map(|[r, g, b]| reals(&[*r, *g, *b, 1.0]));
     *data.buffer_mut(Buffer::Texels) = words.collect();
     // The integral over each texel of the bilinear luminance: tent weights 1/8, 6/8, 1/8 along each axis.
     let luminance = |x: i64, y: i64| {
@@ -92,9 +103,18 @@ pub(crate) fn set_params(data: &mut SceneData, values: &[f32]) {
 }
 
 /// The point of triangle `prim` at barycentric (u, v), seen along `dir`.
-pub(crate) fn surface_at<D: Domain>(d: D, prim: u32, [u, v]: [f64; 2], dir: [f64; 3]) -> Surface<D> {
+pub(crate) fn surface_at<D: Domain>(
+    d: D,
+    prim: u32,
+    [u, v]: [f64; 2],
+    dir: [f64; 3],
+) -> Surface<D> {
     let [x, y, z] = dir.map(|c| d.lit(c));
-    let hit = Hit { u: d.lit(u), v: d.lit(v), prim: d.uint(prim) };
+    let hit = Hit {
+        u: d.lit(u),
+        v: d.lit(v),
+        prim: d.uint(prim),
+    };
     Surface::new(d, Attributes::default(), &hit, vec3(x, y, z))
 }
 

@@ -12,12 +12,19 @@ pub(super) fn table(weights: &[f64]) -> Vec<Slot> {
     let sum: f64 = weights.iter().sum();
     let scale = weights.len() as f64 / sum;
     let mut left: Vec<f64> = weights.iter().map(|w| w * scale).collect();
-    let mut slots: Vec<Slot> =
-        (0..weights.len() as u32).map(|alias| Slot { threshold: 1.0, alias }).collect();
+    let mut slots: Vec<Slot> = (0..weights.len() as u32)
+        .map(|alias| Slot {
+            threshold: 1.0,
+            alias,
+        })
+        .collect();
     let (mut small, mut large): (Vec<usize>, Vec<usize>) =
         (0..weights.len()).partition(|&i| left[i] < 1.0);
     while let (Some(s), Some(&l)) = (small.pop(), large.last()) {
-        slots[s] = Slot { threshold: left[s] as f32, alias: l as u32 };
+        slots[s] = Slot {
+            threshold: left[s] as f32,
+            alias: l as u32,
+        };
         left[l] -= 1.0 - left[s];
         if left[l] < 1.0 {
             large.pop();
@@ -28,7 +35,10 @@ pub(super) fn table(weights: &[f64]) -> Vec<Slot> {
     for s in small {
         if weights[s] == 0.0 {
             let heaviest = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b]));
-            slots[s] = Slot { threshold: 0.0, alias: heaviest.unwrap_or(s) as u32 };
+            slots[s] = Slot {
+                threshold: 0.0,
+                alias: heaviest.unwrap_or(s) as u32,
+            };
         }
     }
     slots

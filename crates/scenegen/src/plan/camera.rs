@@ -41,8 +41,10 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    pub(super) const EMPTY: Self =
-        Self { lo: Vec3::splat(f32::INFINITY), hi: Vec3::splat(f32::NEG_INFINITY) };
+    pub(super) const EMPTY: Self = Self {
+        lo: Vec3::splat(f32::INFINITY),
+        hi: Vec3::splat(f32::NEG_INFINITY),
+    };
 
     pub(super) fn add(&mut self, p: Vec3) {
         self.lo = self.lo.min(p);
@@ -56,7 +58,10 @@ impl Bounds {
         }
         // Halved first: the sum of two large coordinates may overflow.
         let half = self.hi * 0.5 - self.lo * 0.5;
-        (self.lo * 0.5 + self.hi * 0.5, half.length().clamp(1e-6, 1e30))
+        (
+            self.lo * 0.5 + self.hi * 0.5,
+            half.length().clamp(1e-6, 1e30),
+        )
     }
 }
 
@@ -86,12 +91,24 @@ fn look(dir: Vec3, up: Vec3) -> Quat {
 
 fn named<'a>(scene: &'a SceneDesc, wanted: &str) -> Result<&'a CameraDesc, PlanError> {
     let by_name = scene.cameras.iter().find(|camera| camera.name == wanted);
-    let by_number = || wanted.parse::<usize>().ok().and_then(|number| scene.cameras.get(number));
+    let by_number = || {
+        wanted
+            .parse::<usize>()
+            .ok()
+            .and_then(|number| scene.cameras.get(number))
+    };
     by_name.or_else(by_number).ok_or_else(|| {
         let list = |(number, camera): (usize, &CameraDesc)| format!("{number} {:?}", camera.name);
         let names: Vec<_> = scene.cameras.iter().enumerate().map(list).collect();
-        let available = if names.is_empty() { "no cameras".to_owned() } else { names.join(", ") };
-        PlanError::NoSuchCamera { wanted: format!("{wanted:?}"), available }
+        let available = if names.is_empty() {
+            "no cameras".to_owned()
+        } else {
+            names.join(", ")
+        };
+        PlanError::NoSuchCamera {
+            wanted: format!("{wanted:?}"),
+            available,
+        }
     })
 }
 
@@ -104,7 +121,13 @@ pub(super) fn place(
     warnings: &mut Vec<Warning>,
 ) -> Result<(AnyCamera, String), PlanError> {
     let aspect = options.size[0] as f32 / options.size[1] as f32;
-    let default = || scene.cameras.first().cloned().unwrap_or_else(|| framing(bounds, aspect));
+    let default = || {
+        scene
+            .cameras
+            .first()
+            .cloned()
+            .unwrap_or_else(|| framing(bounds, aspect))
+    };
     let camera = match &options.camera {
         CameraChoice::Default => {
             if scene.cameras.is_empty() {
@@ -129,23 +152,29 @@ pub(super) fn place(
                     default.rotation
                 },
                 projection: match view.fov {
-                    Some(degrees) => Projection::Perspective { yfov: degrees.to_radians() },
+                    Some(degrees) => Projection::Perspective {
+                        yfov: degrees.to_radians(),
+                    },
                     None => default.projection,
                 },
             }
         }
     };
     let (kind, half_height, forward) = match camera.projection {
-        Projection::Perspective { yfov } => {
-            (AnyCamera::Perspective, (yfov * 0.5).tan(), camera.rotation * Vec3::NEG_Z)
-        }
+        Projection::Perspective { yfov } => (
+            AnyCamera::Perspective,
+            (yfov * 0.5).tan(),
+            camera.rotation * Vec3::NEG_Z,
+        ),
         Projection::Orthographic { ymag } => {
             (AnyCamera::Orthographic, ymag, camera.rotation * Vec3::NEG_Z)
         }
     };
     let right = camera.rotation * Vec3::X * (half_height * aspect);
     let up = camera.rotation * Vec3::Y * half_height;
-    let words = [camera.position, right, up, forward].into_iter().flat_map(|v| v.to_array());
+    let words = [camera.position, right, up, forward]
+        .into_iter()
+        .flat_map(|v| v.to_array());
     *data.buffer_mut(Buffer::Camera) = words.map(f32::to_bits).collect();
     Ok((kind, camera.name))
 }

@@ -10,7 +10,9 @@ pub(super) fn is_closed(mesh: &MeshDesc) -> bool {
     let mut numbers = BTreeMap::new();
     let mut number = |corner: u32| {
         // −0 and 0 are the same place.
-        let place = mesh.positions[corner as usize].to_array().map(|c| (c + 0.0).to_bits());
+        let place = mesh.positions[corner as usize]
+            .to_array()
+            .map(|c| (c + 0.0).to_bits());
         let next = numbers.len();
         *numbers.entry(place).or_insert(next)
     };
@@ -37,7 +39,11 @@ mod tests {
     fn a_tetrahedron_is_closed_until_a_side_is_missing_or_turned() {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-        let mesh = MeshDesc { positions, triangles, ..MeshDesc::default() };
+        let mesh = MeshDesc {
+            positions,
+            triangles,
+            ..MeshDesc::default()
+        };
         assert!(is_closed(&mesh));
         let mut open = mesh.clone();
         open.triangles.pop();

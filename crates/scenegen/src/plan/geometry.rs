@@ -63,7 +63,13 @@ pub(super) fn pack(
             return Err(PlanError::TooLarge { what: "triangles" });
         }
         pack_vertices(mesh, instance, wanted, data, &mut bounds);
-        pack_triangles(mesh, instance, vertices as u32, materials.of(mesh.material), data);
+        pack_triangles(
+            mesh,
+            instance,
+            vertices as u32,
+            materials.of(mesh.material),
+            data,
+        );
         let start = triangles as u32;
         vertices += mesh.positions.len() as u64;
         triangles += mesh.triangles.len() as u64;
@@ -71,11 +77,16 @@ pub(super) fn pack(
     }
     let culled = data.single_sided.iter().filter(|&&single| single).count();
     let culling = culling(culled, data.single_sided.len());
-    Ok(Geometry { bounds, culling, ranges })
+    Ok(Geometry {
+        bounds,
+        culling,
+        ranges,
+    })
 }
 
 fn extend(data: &mut SceneData, buffer: Buffer, values: impl IntoIterator<Item = f32>) {
-    data.buffer_mut(buffer).extend(values.into_iter().map(f32::to_bits));
+    data.buffer_mut(buffer)
+        .extend(values.into_iter().map(f32::to_bits));
 }
 
 fn pack_vertices(
@@ -93,7 +104,11 @@ fn pack_vertices(
         linear.z_axis.cross(linear.x_axis),
         linear.x_axis.cross(linear.y_axis),
     );
-    let side = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+    let side = if linear.determinant() < 0.0 {
+        -1.0
+    } else {
+        1.0
+    };
     let count = mesh.positions.len();
     for &p in &mesh.positions {
         let p = transform.transform_point3(p);
@@ -125,7 +140,11 @@ fn pack_vertices(
     if wanted.colors {
         match &mesh.colors {
             Some(colors) => {
-                extend(data, Buffer::Colors, colors.iter().flat_map(|c| c.to_array()));
+                extend(
+                    data,
+                    Buffer::Colors,
+                    colors.iter().flat_map(|c| c.to_array()),
+                );
             }
             None => extend(data, Buffer::Colors, vec![1.0; count * 4]),
         }
@@ -142,7 +161,8 @@ fn pack_triangles(
     let mirrored = Mat3::from(instance.transform.matrix3).determinant() < 0.0;
     for &[a, b, c] in &mesh.triangles {
         let corners = if mirrored { [a, c, b] } else { [a, b, c] };
-        data.buffer_mut(Buffer::Triangles).extend(corners.map(|corner| first_vertex + corner));
+        data.buffer_mut(Buffer::Triangles)
+            .extend(corners.map(|corner| first_vertex + corner));
     }
     let count = mesh.triangles.len();
     let push = |data: &mut SceneData, buffer: Buffer, value: u32| {
@@ -152,7 +172,8 @@ fn pack_triangles(
     push(data, Buffer::TrianglePrograms, planned.program);
     push(data, Buffer::TriangleParams, planned.params);
     push(data, Buffer::TriangleLights, NO_LIGHT);
-    data.single_sided.resize(data.single_sided.len() + count, planned.culled);
+    data.single_sided
+        .resize(data.single_sided.len() + count, planned.culled);
 }
 
 /// Whether a mesh's normals say more than its triangles do.

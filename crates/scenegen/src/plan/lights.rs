@@ -41,7 +41,13 @@ pub(super) fn plan_lights(
     }
     if let Some(environment) = &scene.environment {
         let image = &scene.images[environment.image];
-        lights.add_environment(environment, image, images.place(scene, environment.image), radius, data);
+        lights.add_environment(
+            environment,
+            image,
+            images.place(scene, environment.image),
+            radius,
+            data,
+        );
     }
     lights.write(data);
     lights
@@ -54,19 +60,23 @@ fn luminance(c: [f32; 3]) -> f64 {
 
 /// Mean luminance of an emission, texture included.
 fn mean_emission(scene: &SceneDesc, input: &ColorInput) -> f64 {
-    let Some(texture) = &input.texture else { return luminance(input.factor) };
+    let Some(texture) = &input.texture else {
+        return luminance(input.factor);
+    };
     let image = &scene.images[scene.textures[texture.texture].image];
     let [r, g, b] = input.factor;
     let sum: f64 = match &image.texels {
         Texels::Rgba8(texels) => {
             let table = srgb_table();
             let decode = |code: u8| table[usize::from(code)];
-            let texel = |t: &[u8; 4]| luminance([r * decode(t[0]), g * decode(t[1]), b * decode(t[2])]);
+            let texel =
+                |t: &[u8; 4]| luminance([r * decode(t[0]), g * decode(t[1]), b * decode(t[2])]);
             texels.iter().map(texel).sum()
         }
-        Texels::RgbaF32(texels) => {
-            texels.iter().map(|t| luminance([r * t[0], g * t[1], b * t[2]])).sum()
-        }
+        Texels::RgbaF32(texels) => texels
+            .iter()
+            .map(|t| luminance([r * t[0], g * t[1], b * t[2]]))
+            .sum(),
     };
     sum / (f64::from(image.width) * f64::from(image.height))
 }
@@ -101,11 +111,16 @@ impl PlannedLights {
         for (range, material) in &geometry.ranges {
             let planned = materials.of(*material);
             let program = &materials.programs[planned.program as usize];
-            let Some(emission) = program.emission else { continue };
+            let Some(emission) = program.emission else {
+                continue;
+            };
             let SourceNode::Color(source) = &program.inputs[emission.radiance.0].source else {
                 unreachable!("emission is a colour")
             };
-            let node = LightNode::Area { emission: source.clone(), attributes: reads(source, program.attributes) };
+            let node = LightNode::Area {
+                emission: source.clone(),
+                attributes: reads(source, program.attributes),
+            };
             let radiance = mean_emission(scene, &scene.materials[*material].emission);
             let sides = if emission.double_sided { 2.0 } else { 1.0 };
             let kind = self.kind(node);
@@ -113,7 +128,10 @@ impl PlannedLights {
                 let corners = triangles[prim as usize].map(|corner| {
                     glam::DVec3::from_array(positions[corner as usize].map(f64::from))
                 });
-                let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length() * 0.5;
+                let area = (corners[1] - corners[0])
+                    .cross(corners[2] - corners[0])
+                    .length()
+                    * 0.5;
                 let power = std::f64::consts::PI * sides * area * radiance;
                 if power > 0.0 && power.is_finite() {
                     let number = self.records.len() as u32;
@@ -136,9 +154,18 @@ impl PlannedLights {
         match light.kind {
             LightKind::Point { position } => {
                 let kind = self.kind(LightNode::Point);
-                self.push(kind, sphere * strength, &words(&[position.to_array(), light.intensity]));
+                self.push(
+                    kind,
+                    sphere * strength,
+                    &words(&[position.to_array(), light.intensity]),
+                );
             }
-            LightKind::Spot { position, direction, inner, outer } => {
+            LightKind::Spot {
+                position,
+                direction,
+                inner,
+                outer,
+            } => {
                 let kind = self.kind(LightNode::Spot);
                 // KHR_lights_punctual: scale = 1/(cos inner − cos outer), offset = −cos outer·scale.
                 let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
@@ -151,7 +178,11 @@ impl PlannedLights {
             LightKind::Directional { direction } => {
                 let kind = self.kind(LightNode::Directional);
                 let power = std::f64::consts::PI * radius * radius * strength;
-                self.push(kind, power, &words(&[(-direction).to_array(), light.intensity]));
+                self.push(
+                    kind,
+                    power,
+                    &words(&[(-direction).to_array(), light.intensity]),
+                );
             }
         }
     }
@@ -173,8 +204,13 @@ impl PlannedLights {
         let kind = self.kind(LightNode::Environment);
         // The weights' mean is the mean of luminance·sin θ; ∫L dω = 2π²·that.
         let mean = total / weights.len() as f64;
-        let irradiance = 2.0 * std::f64::consts::PI.powi(2) * mean * f64::from(environment.strength);
-        self.push(kind, std::f64::consts::PI * radius * radius * irradiance, &[]);
+        let irradiance =
+            2.0 * std::f64::consts::PI.powi(2) * mean * f64::from(environment.strength);
+        self.push(
+            kind,
+            std::f64::consts::PI * radius * radius * irradiance,
+            &[],
+        );
 
         let (sin, cos) = environment.rotation.sin_cos();
         let header = [
@@ -202,7 +238,11 @@ impl PlannedLights {
     fn write(&self, data: &mut SceneData) {
         let total: f64 = self.powers.iter().map(|(power, _)| power).sum();
         let of_kind = |kind: usize| -> f64 {
-            self.powers.iter().filter(|(_, other)| *other == kind).map(|(power, _)| power).sum()
+            self.powers
+                .iter()
+                .filter(|(_, other)| *other == kind)
+                .map(|(power, _)| power)
+                .sum()
         };
         let kinds: Vec<f64> = (0..self.kinds.len()).map(of_kind).collect();
         let probability = |&(power, kind): &(f64, usize)| {
@@ -247,26 +287,41 @@ fn texel_weights(image: &ImageDesc) -> Vec<f64> {
 }
 
 /// The attributes of a program that one of its colours reads.
-fn reads(node: &ColorNode, of: residual_render::surface::Attributes) -> residual_render::surface::Attributes {
+fn reads(
+    node: &ColorNode,
+    of: residual_render::surface::Attributes,
+) -> residual_render::surface::Attributes {
     use residual_render::program::ScalarNode;
     use residual_render::surface::Attributes;
     fn scalar(node: &ScalarNode, of: Attributes) -> Attributes {
         match node {
             ScalarNode::Const(_) | ScalarNode::Param(_) => Attributes::NONE,
-            ScalarNode::VertexAlpha => Attributes { colors: of.colors, ..Attributes::NONE },
+            ScalarNode::VertexAlpha => Attributes {
+                colors: of.colors,
+                ..Attributes::NONE
+            },
             ScalarNode::Image(image) => uv(image.uv.set, of),
             ScalarNode::Product(a, b) => scalar(a, of).union(scalar(b, of)),
         }
     }
     fn uv(set: usize, of: Attributes) -> Attributes {
         match set {
-            0 => Attributes { uv0: of.uv0, ..Attributes::NONE },
-            _ => Attributes { uv1: of.uv1, ..Attributes::NONE },
+            0 => Attributes {
+                uv0: of.uv0,
+                ..Attributes::NONE
+            },
+            _ => Attributes {
+                uv1: of.uv1,
+                ..Attributes::NONE
+            },
         }
     }
     match node {
         ColorNode::Const(_) | ColorNode::Param(_) => Attributes::NONE,
-        ColorNode::VertexColor => Attributes { colors: of.colors, ..Attributes::NONE },
+        ColorNode::VertexColor => Attributes {
+            colors: of.colors,
+            ..Attributes::NONE
+        },
         ColorNode::Image(image) => uv(image.uv.set, of),
         ColorNode::Gray(node) => scalar(node, of),
         ColorNode::Product(a, b) => reads(a, of).union(reads(b, of)),

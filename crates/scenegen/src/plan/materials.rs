@@ -26,15 +26,23 @@ pub(super) fn plan_materials(
     images: &mut Images,
     warnings: &mut Vec<Warning>,
 ) -> Materials {
-    let mut materials = Materials { planned: vec![None; scene.materials.len()], ..Materials::default() };
+    let mut materials = Materials {
+        planned: vec![None; scene.materials.len()],
+        ..Materials::default()
+    };
     let mut numbers = BTreeMap::new();
     for (number, available) in available_attributes(scene).into_iter().enumerate() {
         let Some(available) = available else { continue };
         let desc = &scene.materials[number];
         let sources = Sources::new(scene, options.binding, available, images);
         let encloses = encloses_a_body(scene, number);
-        let mut builder =
-            Builder { sources, inputs: Vec::new(), warnings, name: &desc.name, encloses };
+        let mut builder = Builder {
+            sources,
+            inputs: Vec::new(),
+            warnings,
+            name: &desc.name,
+            encloses,
+        };
         let (program, invisible) = builder.program(desc, available);
         let params = builder.sources.into_params();
         let transmits = bsdf_transmits(&program.bsdf);
@@ -89,7 +97,11 @@ fn encloses_a_body(scene: &SceneDesc, material: usize) -> bool {
         SurfaceDesc::Phong(_) | SurfaceDesc::Dielectric { .. } => false,
     };
     transmits(&scene.materials[material].surface)
-        && scene.meshes.iter().filter(|mesh| mesh.material == material).all(is_closed)
+        && scene
+            .meshes
+            .iter()
+            .filter(|mesh| mesh.material == material)
+            .all(is_closed)
 }
 
 fn bsdf_transmits(bsdf: &BsdfNode) -> bool {
@@ -118,14 +130,18 @@ struct Builder<'a> {
 
 impl Builder<'_> {
     fn program(&mut self, desc: &MaterialDesc, available: Attributes) -> (Program, bool) {
-        let normal = desc.normal_map.as_ref().filter(|_| available.tangents).map(|map| {
-            let texel = self.sources.linear_texel(&map.texture);
-            let scale = self.sources.number(map.scale);
-            NormalNode {
-                texel: self.color("normal_texel", texel),
-                scale: self.scalar("normal_scale", scale),
-            }
-        });
+        let normal = desc
+            .normal_map
+            .as_ref()
+            .filter(|_| available.tangents)
+            .map(|map| {
+                let texel = self.sources.linear_texel(&map.texture);
+                let scale = self.sources.number(map.scale);
+                NormalNode {
+                    texel: self.color("normal_texel", texel),
+                    scale: self.scalar("normal_scale", scale),
+                }
+            });
         let bsdf = match &desc.surface {
             SurfaceDesc::MetallicRoughness(surface) => self.metallic_roughness(surface),
             SurfaceDesc::Phong(surface) => self.phong(surface),
@@ -144,7 +160,17 @@ impl Builder<'_> {
         attributes.tangents |= normal.is_some();
         let (alpha, invisible) = self.alpha(desc);
         let inputs = std::mem::take(&mut self.inputs);
-        (Program { attributes, inputs, normal, emission, bsdf, alpha }, invisible)
+        (
+            Program {
+                attributes,
+                inputs,
+                normal,
+                emission,
+                bsdf,
+                alpha,
+            },
+            invisible,
+        )
     }
 
     fn input(&mut self, name: &'static str, source: SourceNode) -> Input {
@@ -169,7 +195,9 @@ impl Builder<'_> {
         if is_black(&albedo) {
             return BsdfNode::Black;
         }
-        BsdfNode::Diffuse { albedo: self.color("albedo", albedo) }
+        BsdfNode::Diffuse {
+            albedo: self.color("albedo", albedo),
+        }
     }
 
     fn dielectric(&mut self, tint: ColorNode, ior: f32, solid: bool) -> BsdfNode {
@@ -243,8 +271,9 @@ impl Builder<'_> {
         let grazing = self.sources.scalar(&surface.specular);
         let normal_incidence = ((surface.ior - 1.0) / (surface.ior + 1.0)).powi(2);
         let mut at_normal = surface.specular_color.clone();
-        at_normal.factor =
-            at_normal.factor.map(|c| (c * normal_incidence).min(1.0) * surface.specular.factor);
+        at_normal.factor = at_normal
+            .factor
+            .map(|c| (c * normal_incidence).min(1.0) * surface.specular.factor);
         let reflectance = self.sources.color(&at_normal, false);
         if grazing == ScalarNode::Const(0.0) || (is_black(&reflectance) && surface.ior == 1.0) {
             return self.diffuse(albedo);
@@ -311,7 +340,14 @@ impl Builder<'_> {
             AlphaTest::Blend => AlphaTest::Blend,
         };
         let attributes = self.sources.take_attributes();
-        (Some(AlphaNode { alpha, test, attributes }), false)
+        (
+            Some(AlphaNode {
+                alpha,
+                test,
+                attributes,
+            }),
+            false,
+        )
     }
 }
 

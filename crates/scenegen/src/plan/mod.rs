@@ -102,7 +102,9 @@ pub enum PlanError {
         available: String,
     },
     /// The scene needs more than 2³² words of something, or more than 2³¹ triangles.
-    #[error("the scene is too large: its {what} do not fit 32-bit indices; split it or simplify it")]
+    #[error(
+        "the scene is too large: its {what} do not fit 32-bit indices; split it or simplify it"
+    )]
     TooLarge {
         /// What is too large.
         what: &'static str,
@@ -118,7 +120,8 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         let mut plan = plan(&scene.with_white_sky(), options)?;
         plan.warnings.push(Warning {
             place: "lights".to_owned(),
-            message: "the scene has no light; using a white sky (--env FILE for another)".to_owned(),
+            message: "the scene has no light; using a white sky (--env FILE for another)"
+                .to_owned(),
         });
         return Ok(plan);
     }
@@ -177,7 +180,9 @@ struct Materials {
 
 impl Materials {
     fn of(&self, material: usize) -> &PlannedMaterial {
-        self.planned[material].as_ref().expect("materials of instanced meshes are planned")
+        self.planned[material]
+            .as_ref()
+            .expect("materials of instanced meshes are planned")
     }
 }
 
@@ -188,7 +193,11 @@ impl SceneDesc {
         self.environment.is_some()
             || self.lights.iter().any(|light| emits(&light.intensity))
             || self.instances.iter().any(|instance| {
-                emits(&self.materials[self.meshes[instance.mesh].material].emission.factor)
+                emits(
+                    &self.materials[self.meshes[instance.mesh].material]
+                        .emission
+                        .factor,
+                )
             })
     }
 
@@ -202,7 +211,11 @@ impl SceneDesc {
             texels: Texels::RgbaF32(vec![[1.0; 4]]),
         });
         let image = scene.images.len() - 1;
-        scene.environment = Some(EnvironmentDesc { image, strength: 1.0, rotation: 0.0 });
+        scene.environment = Some(EnvironmentDesc {
+            image,
+            strength: 1.0,
+            rotation: 0.0,
+        });
         scene
     }
 }

@@ -26,7 +26,14 @@ impl<'a> Sources<'a> {
         images: &'a mut Images,
     ) -> Self {
         let read = Attributes::NONE;
-        Self { scene, binding, available, images, params: Vec::new(), read }
+        Self {
+            scene,
+            binding,
+            available,
+            images,
+            params: Vec::new(),
+            read,
+        }
     }
 
     /// The attributes read since the last call.
@@ -134,7 +141,9 @@ impl<'a> Sources<'a> {
         if self.available.colors {
             return None;
         }
-        let Some((texture, channel)) = &input.texture else { return Some(input.factor) };
+        let Some((texture, channel)) = &input.texture else {
+            return Some(input.factor);
+        };
         let image = &self.scene.images[self.scene.textures[texture.texture].image];
         let first = match &image.texels {
             Texels::Rgba8(texels) => {
@@ -144,7 +153,10 @@ impl<'a> Sources<'a> {
             }
             Texels::RgbaF32(texels) => {
                 let first = texels[0][*channel];
-                texels.iter().all(|texel| texel[*channel] == first).then_some(first)
+                texels
+                    .iter()
+                    .all(|texel| texel[*channel] == first)
+                    .then_some(first)
             }
         };
         first.map(|texel| texel * input.factor)
@@ -184,7 +196,17 @@ impl<'a> Sources<'a> {
         let transform = texture
             .transform
             .map(|matrix| self.param(matrix.into_iter().flatten().map(f32::to_bits)));
-        let uv = UvMap { set: texture.uv_set, transform };
-        Image { slot, uv, channel, wrap: (wrap[0], wrap[1]), filter, format }
+        let uv = UvMap {
+            set: texture.uv_set,
+            transform,
+        };
+        Image {
+            slot,
+            uv,
+            channel,
+            wrap: (wrap[0], wrap[1]),
+            filter,
+            format,
+        }
     }
 }

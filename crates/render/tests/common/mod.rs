@@ -1,0 +1,177 @@
+//! A scene's buffers full of random numbers, and the formulas that are run over them.
+#![allow(dead_code, reason = "each test uses some of it")]
+
+use residual_render::domain::tape::{Function, Node, Op, Statement};
+use residual_render::domain::{Buffer, Domain};
+use residual_render::scene_data::SceneData;
+use residual_render::texture::srgb_table;
+
+/// Words of a triangle's parameters.
+pub(crate) const BLOCK: u32 = 64;
+/// In a block: an image's slot.
+pub(crate) const IMAGE: u32 = 48;
+/// In a block: a texture transform.
+pub(crate) const TRANSFORM: u32 = 52;
+/// How many triangles there are.
+pub(crate) const TRIANGLES: u32 = 4;
+
+/// Random numbers.
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    pub(crate) fn word(&mut self) -> u32 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 ^ (self.0 >> 22)) >> 29) as u32
+    }
+
+    /// In [0, 1).
+    pub(crate) fn unit(&mut self) -> f32 {
+        (self.word() >> 8) as f32 / 16_777_216.0
+    }
+
+    /// In [low, high).
+    pub(crate) fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.unit()
+    }
+
+    /// A unit vector.
+    pub(crate) fn direction(&mut self) -> [f32; 3] {
+        loop {
+            let v = [0; 3].map(|_| self.between(-1.0, 1.0));
+            let square: f32 = v.iter().map(|c| c * c).sum();
+            if square > 1e-3 && square < 1.0 {
+                return v.map(|c| c / square.sqrt());
+            }
+        }
+    }
+}
+
+/// Triangles with every attribute, images, five lights of five kinds, an environment and a camera.
+pub(crate) fn scene() -> SceneData {
+    let mut random = Random(7);
+    let mut data = SceneData::default();
+    let vertices = 3 * TRIANGLES;
+    let mut fill = |buffer: Buffer, words: u32, low: f32, high: f32| {
+        let words = (0..words).map(|_| random.between(low, high).to_bits());
+        data.buffer_mut(buffer).extend(words);
+    };
+    fill(Buffer::Positions, 3 * vertices, -2.0, 2.0);
+    fill(Buffer::Normals, 3 * vertices, -1.0, 1.0);
+    fill(Buffer::Tangents, 4 * vertices, -1.0, 1.0);
+    fill(Buffer::Uv0, 2 * vertices, -2.0, 2.0);
+    fill(Buffer::Uv1, 2 * vertices, -2.0, 2.0);
+    fill(Buffer::Colors, 4 * vertices, 0.0, 1.0);
+    fill(Buffer::Params, BLOCK * TRIANGLES, 0.05, 1.0);
+    fill(Buffer::Texels, 4 * 64, 0.0, 1.0);
+    fill(Buffer::Lights, 16 * 5, -1.0, 1.0);
+    fill(Buffer::Camera, 12, -1.0, 1.0);
+    fill(Buffer::LightAlias, 1 + 3 * 5, 0.05, 1.0);
+    fill(Buffer::Environment, 8 + 3 * 12, 0.1, 1.0);
+    data.buffer_mut(Buffer::Triangles).extend(0..vertices);
+    data.buffer_mut(Buffer::Tables)
+        .extend(srgb_table().map(f32::to_bits));
+    for triangle in 0..TRIANGLES {
+        data.buffer_mut(Buffer::TriangleParams)
+            .push(BLOCK * triangle);
+        data.buffer_mut(Buffer::TrianglePrograms).push(0);
+        data.buffer_mut(Buffer::TriangleLights)
+            .push(if triangle == 0 { u32::MAX } else { 0 });
+        for vertex in 0..3 {
+            let sign = if triangle % 2 == 0 { 1.0_f32 } else { -1.0 };
+            let word = 4 * (3 * triangle + vertex) + 3;
+            data.buffer_mut(Buffer::Tangents)[word as usize] = sign.to_bits();
+        }
+        let slot = (BLOCK * triangle + IMAGE) as usize;
+        data.buffer_mut(Buffer::Params)[slot..slot + 3].copy_from_slice(&[4 * triangle, 5, 3]);
+    }
+    for light in 0..5 {
+        let words = data.buffer_mut(Buffer::Lights);
+        words[16 * light] = light as u32;
+        let alias = data.buffer_mut(Buffer::LightAlias);
+        alias[0] = 5;
+        alias[1 + 3 * light + 1] = (light as u32 + 2) % 5;
+    }
+    // Kind 0 is an emitting triangle, seen from both sides.
+    data.buffer_mut(Buffer::Lights)[1..3].copy_from_slice(&[1, 1]);
+    let environment = data.buffer_mut(Buffer::Environment);
+    environment[..3].copy_from_slice(&[4, 3, 0]);
+    environment[3..6].copy_from_slice(&[1.5_f32, 0.6, 0.8].map(f32::to_bits));
+    environment[6] = 4;
+    for texel in 0..12 {
+        environment[8 + 3 * texel + 1] = (texel as u32 + 5) % 12;
+    }
+    data
+}
+
+/// What a formula yields.
+pub(crate) struct Yield<D: Domain> {
+    pub(crate) reals: Vec<D::F>,
+    pub(crate) words: Vec<D::U>,
+    pub(crate) truths: Vec<D::M>,
+}
+
+impl<D: Domain> Yield<D> {
+    pub(crate) fn new() -> Self {
+        Self {
+            reals: vec![],
+            words: vec![],
+            truths: vec![],
+        }
+    }
+
+    pub(crate) fn real(&mut self, value: D::F) {
+        self.reals.push(value);
+    }
+
+    pub(crate) fn vector(&mut self, value: residual_render::math::Vec3<D::F>) {
+        self.reals.extend([value.x, value.y, value.z]);
+    }
+}
+
+/// A formula, whatever its domain.
+pub(crate) trait Formula {
+    /// How it appears in messages.
+    fn name(&self) -> String;
+    /// Arguments for one run: real numbers and words.
+    fn arguments(&self, random: &mut Random) -> (Vec<f32>, Vec<u32>);
+    /// Runs it.
+    fn run<D: Domain>(&self, d: D, reals: &[D::F], words: &[D::U]) -> Yield<D>;
+}
+
+pub(crate) fn count(statements: &[Statement], wanted: &impl Fn(&Statement) -> bool) -> usize {
+    let inner = |statement: &Statement| match statement {
+        Statement::Let(_) => 0,
+        Statement::If {
+            then, otherwise, ..
+        } => count(then, wanted) + count(otherwise, wanted),
+    };
+    statements
+        .iter()
+        .map(|s| usize::from(wanted(s)) + inner(s))
+        .sum()
+}
+
+pub(crate) fn ifs(function: &Function) -> usize {
+    count(&function.body, &|s| matches!(s, Statement::If { .. }))
+}
+
+pub(crate) fn loads(function: &Function, wanted: Buffer) -> usize {
+    count(&function.body, &|s| match s {
+        Statement::Let(id) => {
+            matches!(function.node(*id), Node::Load { buffer, .. } if buffer == wanted)
+        }
+        Statement::If { .. } => false,
+    })
+}
+
+pub(crate) fn ops(function: &Function, wanted: Op) -> usize {
+    count(&function.body, &|s| match s {
+        Statement::Let(id) => {
+            matches!(function.node(*id), Node::Apply { op, .. } if op == wanted)
+        }
+        Statement::If { .. } => false,
+    })
+}
