@@ -19,7 +19,12 @@ type White = Const<[f32; 3]>;
 const WHITE: White = Const([1.0; 3]);
 
 fn glossy(roughness: f32, reflectance: f32) -> Glossy<White, Const<f32>, White, Const<f32>> {
-    Glossy { albedo: WHITE, roughness: Const(roughness), reflectance: Const([reflectance; 3]), grazing: Const(1.0) }
+    Glossy {
+        albedo: WHITE,
+        roughness: Const(roughness),
+        reflectance: Const([reflectance; 3]),
+        grazing: Const(1.0),
+    }
 }
 fn conductor(roughness: f32) -> Conductor<White, Const<f32>> {
     Conductor { color: WHITE, roughness: Const(roughness) }
@@ -74,7 +79,11 @@ fn furnace_of_metals() {
     }
     // A mirror loses nothing.
     for (cos, albedo) in albedos(&conductor(0.0)) {
-        assert!((albedo.value() - 1.0).abs() < if cos > 0.04 { 1e-4 } else { 2e-2 }, "{cos}: {}", albedo.value());
+        assert!(
+            (albedo.value() - 1.0).abs() < if cos > 0.04 { 1e-4 } else { 2e-2 },
+            "{cos}: {}",
+            albedo.value()
+        );
     }
 }
 
@@ -82,7 +91,10 @@ fn furnace_of_metals() {
 fn furnace_of_coated_surfaces() {
     for roughness in ROUGHNESSES {
         for reflectance in [0.0, 0.04, 0.5, 1.0] {
-            assert_no_gain(&format!("glossy {roughness}, F₀ {reflectance}"), &glossy(roughness, reflectance));
+            assert_no_gain(
+                &format!("glossy {roughness}, F₀ {reflectance}"),
+                &glossy(roughness, reflectance),
+            );
         }
     }
 }
@@ -100,9 +112,15 @@ fn furnace_of_combinations() {
     let half = Diffuse { albedo: Const([0.5; 3]) };
     let shiny = Phong { color: Const([0.5; 3]), exponent: Const(30.0) };
     assert_no_gain("mix", &Mix { a: base, b: conductor(0.3), weight: Const(0.4) });
-    assert_no_gain("mix with glass", &Mix { a: base, b: Dielectric::new(WHITE, Const(1.5), Thin), weight: Const(0.4) });
+    assert_no_gain(
+        "mix with glass",
+        &Mix { a: base, b: Dielectric::new(WHITE, Const(1.5), Thin), weight: Const(0.4) },
+    );
     assert_no_gain("sum", &Sum { a: half, b: shiny, probability: Const(0.3) });
-    assert_no_gain("ends", &Mix { a: base, b: Mix { a: base, b: phong(9.0), weight: Const(1.0) }, weight: Const(0.0) });
+    assert_no_gain(
+        "ends",
+        &Mix { a: base, b: Mix { a: base, b: phong(9.0), weight: Const(1.0) }, weight: Const(0.0) },
+    );
     // What mixes lose nothing: the estimator's mean does not depend on how lobes are chosen.
     let glass = Dielectric::new(WHITE, Const(1.5), Thin);
     for (_, albedo) in albedos(&Mix { a: base, b: glass, weight: Const(0.25) }) {
@@ -153,7 +171,8 @@ fn asymmetry<B: for<'a> Bsdf<Scalar<'a>>>(name: &str, bsdf: &B) {
         let back = f64::from(bsdf.eval(d, &surface, b, a).value.x) / f64::from(a.z);
         let size = there.max(back);
         let error = if size == 0.0 { 0.0 } else { (there - back).abs() / size };
-        worst.add(if size < 1e-30 { 0.0 } else { error }, || format!("{a:?} {b:?}: {there} {back}"));
+        worst
+            .add(if size < 1e-30 { 0.0 } else { error }, || format!("{a:?} {b:?}: {there} {back}"));
     }
     worst.assert_below(1e-4, &format!("{name}: asymmetry, relative"));
 }
@@ -189,7 +208,10 @@ fn degenerate_directions_give_finite_values() {
             for &wi in &directions {
                 let value = bsdf.eval(d, &surface, wo, wi);
                 let all = [value.value.x, value.value.y, value.value.z, value.pdf];
-                assert!(all.iter().all(|c| c.is_finite() && *c >= 0.0), "{name} {wo:?} {wi:?}: {value:?}");
+                assert!(
+                    all.iter().all(|c| c.is_finite() && *c >= 0.0),
+                    "{name} {wo:?} {wi:?}: {value:?}"
+                );
                 let none = wi.z <= 0.0;
                 assert!(!none || all == [0.0; 4], "{name} {wo:?} {wi:?}: {value:?}");
             }
@@ -198,8 +220,16 @@ fn degenerate_directions_give_finite_values() {
                     for w in [0.0, 0.5, below_one] {
                         let s: BsdfSample<_> = bsdf.sample(d, &surface, wo, [u, v, w]);
                         let all = array(s.wi).into_iter().chain(array(s.weight)).chain([s.pdf]);
-                        assert!(all.clone().all(f32::is_finite), "{name} {wo:?} {:?}: {s:?}", [u, v, w]);
-                        assert!(s.pdf >= 0.0 && s.weight.x >= 0.0, "{name} {wo:?} {:?}: {s:?}", [u, v, w]);
+                        assert!(
+                            all.clone().all(f32::is_finite),
+                            "{name} {wo:?} {:?}: {s:?}",
+                            [u, v, w]
+                        );
+                        assert!(
+                            s.pdf >= 0.0 && s.weight.x >= 0.0,
+                            "{name} {wo:?} {:?}: {s:?}",
+                            [u, v, w]
+                        );
                     }
                 }
             }
@@ -215,12 +245,21 @@ fn degenerate_directions_give_finite_values() {
     check("diffuse", &Diffuse { albedo: WHITE });
     check("solid", &Dielectric::new(WHITE, Const(1.5), Solid));
     check("thin", &Dielectric::new(WHITE, Const(1.5), Thin));
-    let mix = |weight| Mix { a: Diffuse { albedo: WHITE }, b: Dielectric::new(WHITE, Const(1.5), Solid), weight: Const(weight) };
+    let mix = |weight| Mix {
+        a: Diffuse { albedo: WHITE },
+        b: Dielectric::new(WHITE, Const(1.5), Solid),
+        weight: Const(weight),
+    };
     [0.0, 0.3, 1.0].into_iter().for_each(|weight| check("mix", &mix(weight)));
 }
 
 /// Reflection and transmission with their probabilities, by choosing each lobe with its own number.
-fn lobes<'a, B: Bsdf<Scalar<'a>>>(bsdf: &B, surface: &Surface<Scalar<'a>>, d: Scalar<'a>, wo: Vec3<f32>) -> f64 {
+fn lobes<'a, B: Bsdf<Scalar<'a>>>(
+    bsdf: &B,
+    surface: &Surface<Scalar<'a>>,
+    d: Scalar<'a>,
+    wo: Vec3<f32>,
+) -> f64 {
     // The largest number that still reflects, by bisection.
     let reflects = |u: f32| bsdf.sample(d, surface, wo, [0.5, 0.5, u]).wi.z > 0.0;
     let (mut low, mut high) = (0_u32, 1 << 24);
@@ -249,7 +288,10 @@ fn dielectrics_conserve_energy_and_obey_snell() {
             let exact = crate::support::unit(array(wo).map(f64::from));
             let sin2 = (exact[0] * exact[0] + exact[1] * exact[1]) / (eta * eta);
             let mirrored = glass.sample(d, surface, wo, [0.5, 0.5, 0.0]);
-            assert_eq!((mirrored.wi, mirrored.delta, mirrored.pdf), (vec3(-wo.x, -wo.y, wo.z), true, 0.0));
+            assert_eq!(
+                (mirrored.wi, mirrored.delta, mirrored.pdf),
+                (vec3(-wo.x, -wo.y, wo.z), true, 0.0)
+            );
             assert_eq!(mirrored.weight, vec3(1.0, 1.0, 1.0));
             let through = glass.sample(d, surface, wo, [0.5, 0.5, 1.0 - 1.0 / 16_777_216.0]);
             if sin2 > 1.0 - 1e-3 {
@@ -258,7 +300,8 @@ fn dielectrics_conserve_energy_and_obey_snell() {
             let wi = array(through.wi).map(f64::from);
             assert!(wi[2] < 0.0, "{}", place());
             unit.add((dot(wi, wi) - 1.0).abs(), place);
-            let error = [wi[0] + exact[0] / eta, wi[1] + exact[1] / eta, wi[2] + (1.0 - sin2).sqrt()];
+            let error =
+                [wi[0] + exact[0] / eta, wi[1] + exact[1] / eta, wi[2] + (1.0 - sin2).sqrt()];
             snell.add(error.map(f64::abs).into_iter().fold(0.0, f64::max), place);
             // Radiance changes by 1/η²; its energy does not, since the cone changes by η².
             share.add((f64::from(through.weight.x) * eta * eta - 1.0).abs(), place);
@@ -269,7 +312,8 @@ fn dielectrics_conserve_energy_and_obey_snell() {
     snell.assert_below(2e-5, "Snell's law, component");
     share.assert_below(1e-6, "1/η² of transmitted radiance");
     for cos in [1.0, 0.5, 0.1] {
-        let reflectance = lobes(&Dielectric::new(WHITE, Const(1.5), Solid), &front, d, view(cos, 0.3));
+        let reflectance =
+            lobes(&Dielectric::new(WHITE, Const(1.5), Solid), &front, d, view(cos, 0.3));
         let exact = residual_render::bsdf::fresnel(d, view(cos, 0.3).z, 1.5).0;
         assert!((reflectance - f64::from(exact)).abs() < 1e-6, "{cos}");
     }

@@ -5,7 +5,9 @@ use residual_render::bsdf::{
     Bsdf, Conductor, Dielectric, Diffuse, Glossy, Mix, Phong, Solid, Sum, Thin, fresnel,
 };
 use residual_render::domain::{Buffer, Domain, Lanes, Lanes4, Lanes8, Lanes16, One, Scalar};
-use residual_render::light::{self, Area, Directional, Environment, LightKind, LightSample, Point, Spot};
+use residual_render::light::{
+    self, Area, Directional, Environment, LightKind, LightSample, Point, Spot,
+};
 use residual_render::math::elementary::{atan2, exp2, log2, pow, sincos_turns};
 use residual_render::math::vec3::vec3;
 use residual_render::math::{Frame, Vec3, warp};
@@ -30,7 +32,8 @@ const ROWS: usize = 2048;
 fn evaluate<D: Lanes>(d: D, formula: &impl Formula, columns: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let mut results: Vec<Vec<u32>> = Vec::new();
     for first in (0..ROWS).step_by(D::LANES) {
-        let x: Vec<_> = columns.iter().map(|column| d.word(&column[first..first + D::LANES])).collect();
+        let x: Vec<_> =
+            columns.iter().map(|column| d.word(&column[first..first + D::LANES])).collect();
         for (k, result) in formula.run(d, &x).into_iter().enumerate() {
             if results.len() <= k {
                 results.push(vec![0; ROWS]);
@@ -46,14 +49,19 @@ fn evaluate<D: Lanes>(d: D, formula: &impl Formula, columns: &[Vec<u32>]) -> Vec
 fn check(name: &str, data: &SceneData, formula: &impl Formula, columns: &[Vec<u32>]) {
     let buffers = data.buffers();
     // One NaN is like another: IEEE 754 leaves their payloads open.
-    let same = |a: u32, b: u32| a == b || (f32::from_bits(a).is_nan() && f32::from_bits(b).is_nan());
+    let same =
+        |a: u32, b: u32| a == b || (f32::from_bits(a).is_nan() && f32::from_bits(b).is_nan());
     let expected = evaluate(Scalar::new(&buffers), formula, columns);
     let compare = |lanes: usize, results: Vec<Vec<u32>>| {
         for (k, (result, expected)) in results.iter().zip(&expected).enumerate() {
             for row in 0..ROWS {
-                let input: Vec<_> = columns.iter().map(|c| (c[row], f32::from_bits(c[row]))).collect();
+                let input: Vec<_> =
+                    columns.iter().map(|c| (c[row], f32::from_bits(c[row]))).collect();
                 let (a, b) = (expected[row], result[row]);
-                assert!(same(a, b), "{name}, result {k}, {lanes} lanes: {a:#x} {b:#x} for {input:x?}");
+                assert!(
+                    same(a, b),
+                    "{name}, result {k}, {lanes} lanes: {a:#x} {b:#x} for {input:x?}"
+                );
             }
         }
     };
@@ -75,8 +83,22 @@ fn truth<D: Domain>(d: D, mask: D::M) -> D::F {
 }
 
 const SPECIAL: [f32; 16] = [
-    0.0, -0.0, 1.0, -1.0, 0.5, -0.5, f32::MAX, f32::MIN, f32::MIN_POSITIVE, 1e-45, -1e-45, f32::INFINITY,
-    f32::NEG_INFINITY, f32::NAN, 16_777_216.0, 8_388_607.5,
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    -0.5,
+    f32::MAX,
+    f32::MIN,
+    f32::MIN_POSITIVE,
+    1e-45,
+    -1e-45,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+    16_777_216.0,
+    8_388_607.5,
 ];
 
 /// Columns of bits: special values against one another, then anything.
@@ -84,7 +106,9 @@ fn any_bits(count: usize, seed: u64) -> Vec<Vec<u32>> {
     let mut rng = Rng::new(seed);
     let special = |row: usize, k: usize| SPECIAL[(row >> (4 * (k % 2))) & 15].to_bits();
     (0..count)
-        .map(|k| (0..ROWS).map(|row| if row < 256 { special(row, k) } else { rng.bits() }).collect())
+        .map(|k| {
+            (0..ROWS).map(|row| if row < 256 { special(row, k) } else { rng.bits() }).collect()
+        })
         .collect()
 }
 
@@ -107,20 +131,53 @@ impl Formula for Operations {
         let (i, j) = (x[3], x[4]);
         let mask = d.lt(a, b);
         let real = [
-            a + b, a - b, a * b, a / b, -a, d.sqrt(a), d.min(a, b), d.max(a, b), d.abs(a), d.floor(a),
-            d.fma(a, b, c), d.copysign(a, b), d.select(mask, b, c), d.to_real(i >> 8),
-            truth(d, mask), truth(d, d.le(a, b)), truth(d, d.eq(a, b)), truth(d, d.eq_u(i, j)),
-            truth(d, d.eq_u(i, i)), truth(d, d.lt_u(i, j)), truth(d, !mask), truth(d, mask & d.le(b, c)),
-            truth(d, mask | d.le(b, c)), truth(d, d.truth(true)),
-            d.branch(mask, || One(a + c), || One(b - c)).0, d.load_real(Buffer::Tables, i >> 23),
-            d.uniform_real(Buffer::Tables, 7), d.lit(0.1),
+            a + b,
+            a - b,
+            a * b,
+            a / b,
+            -a,
+            d.sqrt(a),
+            d.min(a, b),
+            d.max(a, b),
+            d.abs(a),
+            d.floor(a),
+            d.fma(a, b, c),
+            d.copysign(a, b),
+            d.select(mask, b, c),
+            d.to_real(i >> 8),
+            truth(d, mask),
+            truth(d, d.le(a, b)),
+            truth(d, d.eq(a, b)),
+            truth(d, d.eq_u(i, j)),
+            truth(d, d.eq_u(i, i)),
+            truth(d, d.lt_u(i, j)),
+            truth(d, !mask),
+            truth(d, mask & d.le(b, c)),
+            truth(d, mask | d.le(b, c)),
+            truth(d, d.truth(true)),
+            d.branch(mask, || One(a + c), || One(b - c)).0,
+            d.load_real(Buffer::Tables, i >> 23),
+            d.uniform_real(Buffer::Tables, 7),
+            d.lit(0.1),
         ];
         // Truncation is specified for numbers from 0 to 2³² only.
         let inside = d.le(d.lit(0.0), a) & d.lt(a, d.lit(4_294_967_296.0));
         let whole = [
-            i + j, i - j, i * j, i & j, i | j, i ^ j, i << 7, i >> 13, i << 0, i >> 31,
-            d.select_u(mask, i, j), d.load(Buffer::Tables, i >> 22), d.uniform(Buffer::Tables, 255),
-            d.uint(0x8000_0001), d.to_uint(d.select(inside, a, d.lit(3.9))),
+            i + j,
+            i - j,
+            i * j,
+            i & j,
+            i | j,
+            i ^ j,
+            i << 7,
+            i >> 13,
+            i << 0,
+            i >> 31,
+            d.select_u(mask, i, j),
+            d.load(Buffer::Tables, i >> 22),
+            d.uniform(Buffer::Tables, 255),
+            d.uint(0x8000_0001),
+            d.to_uint(d.select(inside, a, d.lit(3.9))),
         ];
         words(d, real).into_iter().chain(whole).collect()
     }
@@ -155,10 +212,16 @@ impl Formula for Elementary {
         let (r, g) = fresnel(d, b, d.abs(a) + d.lit(0.5));
         let frame = Frame::around(d, v.normalize_any(d));
         let size = d.abs(a);
-        let scalars = [sin, cos, atan2(d, a, b), exp2(d, a), log2(d, size), pow(d, size, b), p, q, r, g];
+        let scalars =
+            [sin, cos, atan2(d, a, b), exp2(d, a), log2(d, size), pow(d, size, b), p, q, r, g];
         let vectors = [
-            v.normalize_any(d), v.normalize(d), v.cross(vec3(c, a, b)), warp::cosine_hemisphere(d, [b, c]),
-            frame.tangent, frame.bitangent, frame.to_local(d, vec3(c, b, a)),
+            v.normalize_any(d),
+            v.normalize(d),
+            v.cross(vec3(c, a, b)),
+            warp::cosine_hemisphere(d, [b, c]),
+            frame.tangent,
+            frame.bitangent,
+            frame.to_local(d, vec3(c, b, a)),
         ];
         words(d, scalars.into_iter().chain(vectors.into_iter().flat_map(vector)))
     }
@@ -300,7 +363,14 @@ fn textures_agree() {
         for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
             for format in [AnyFormat::SrgbRgba8, AnyFormat::LinearRgba8, AnyFormat::LinearFloat] {
                 let uv = UvMap { set: 0, transform: None };
-                let image = Image { slot: 0, uv, channel: 3, wrap: (wrap, AnyWrap::Repeat), filter, format };
+                let image = Image {
+                    slot: 0,
+                    uv,
+                    channel: 3,
+                    wrap: (wrap, AnyWrap::Repeat),
+                    filter,
+                    format,
+                };
                 let name = format!("{image:?}");
                 check(&name, &data, &Texture(image), &moderate);
                 check(&name, &data, &Texture(image), &any_bits(2, 50));

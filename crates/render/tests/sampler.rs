@@ -12,7 +12,13 @@ fn scalar() -> Scalar<'static> {
     Scalar::new(&NOTHING)
 }
 
-fn pair(sampler: &impl Sampler<Scalar<'static>>, [x, y]: [u32; 2], index: u32, seed: u32, dimension: u32) -> [f32; 2] {
+fn pair(
+    sampler: &impl Sampler<Scalar<'static>>,
+    [x, y]: [u32; 2],
+    index: u32,
+    seed: u32,
+    dimension: u32,
+) -> [f32; 2] {
     let d = scalar();
     let key = SampleKey::new(d, Uint(x), Uint(y), Uint(index), Uint(seed));
     sampler.pair(d, key, Uint(dimension))
@@ -23,7 +29,10 @@ fn numbers_never_reach_one() {
     let d = scalar();
     let below = 1.0 - 1.0 / 16_777_216.0;
     assert_eq!(unit(d, Uint(u32::MAX)), below);
-    assert_eq!((unit(d, Uint(0)), unit(d, Uint(255)), unit(d, Uint(256))), (0.0, 0.0, 1.0 / 16_777_216.0));
+    assert_eq!(
+        (unit(d, Uint(0)), unit(d, Uint(255)), unit(d, Uint(256))),
+        (0.0, 0.0, 1.0 / 16_777_216.0)
+    );
     let mut rng = Rng::new(30);
     for _ in 0..200_000 {
         let (pixel, index) = ([rng.bits(), rng.bits()], rng.bits());
@@ -37,7 +46,8 @@ fn numbers_never_reach_one() {
 fn hash_is_a_bijection() {
     let d = scalar();
     // Newton's iteration for the inverse of an odd number modulo 2³².
-    let inverse = |a: u32| (0..5).fold(a, |x, _| x.wrapping_mul(2_u32.wrapping_sub(a.wrapping_mul(x))));
+    let inverse =
+        |a: u32| (0..5).fold(a, |x, _| x.wrapping_mul(2_u32.wrapping_sub(a.wrapping_mul(x))));
     let undo = |x: u32| {
         let x = (x ^ (x >> 16)).wrapping_mul(inverse(0x846c_a68b));
         let x = (x ^ (x >> 15) ^ (x >> 30)).wrapping_mul(inverse(0x7feb_352d));
@@ -72,7 +82,11 @@ fn sobol_pairs_fill_elementary_intervals() {
                 let points: Vec<_> =
                     (0..1 << 10).map(|index| pair(&Sobol, pixel, index, seed, dimension)).collect();
                 for k in 0..=10 {
-                    assert_eq!(crowded(&points[..1 << k]), 0, "2^{k}, dimension {dimension}, seed {seed}");
+                    assert_eq!(
+                        crowded(&points[..1 << k]),
+                        0,
+                        "2^{k}, dimension {dimension}, seed {seed}"
+                    );
                 }
                 // A (0, 2)-sequence: any aligned block of 2^k points is a net as well.
                 for block in points.chunks_exact(64) {
@@ -191,15 +205,17 @@ fn neighbouring_pixels_are_uncorrelated_over_samples() {
         let at = [pixel % 61, pixel / 61];
         for (step, deviates) in STEPS.iter().zip(&mut deviates) {
             let next = [at[0] + step[0], at[1] + step[1]];
-            let numbers = |sampler: AnySampler| {
-                correlation((0..512).map(|k| {
-                    [pair(&sampler, at, k, 7, 4)[0], pair(&sampler, next, k, 7, 4)[0]]
-                }))
-            };
+            let numbers =
+                |sampler: AnySampler| {
+                    correlation((0..512).map(|k| {
+                        [pair(&sampler, at, k, 7, 4)[0], pair(&sampler, next, k, 7, 4)[0]]
+                    }))
+                };
             family.add_z(numbers(AnySampler::Independent), format!("{at:?} {step:?}"));
             deviates.0.add(numbers(AnySampler::Sobol));
         }
-        let lag = (0..512).map(|k| [pair(&Independent, at, k, 7, 4)[0], pair(&Independent, at, k + 1, 7, 4)[0]]);
+        let lag = (0..512)
+            .map(|k| [pair(&Independent, at, k, 7, 4)[0], pair(&Independent, at, k + 1, 7, 4)[0]]);
         family.add_z(correlation(lag), format!("{at:?} lag 1"));
         let seeds = (0..512).map(|k| [pair(&Sobol, at, k, 7, 4)[1], pair(&Sobol, at, k, 8, 4)[1]]);
         deviates[3].0.add(correlation(seeds));

@@ -3,8 +3,8 @@
 use residual_render::domain::{Buffer, Scalar};
 use residual_render::scene_data::SceneData;
 use residual_render::texture::{
-    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, ColorSource, Image, LinearFloat, Nearest, Repeat, ScalarSource,
-    SrgbRgba8, UvMap, srgb_table,
+    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, ColorSource, Image, LinearFloat, Nearest,
+    Repeat, ScalarSource, SrgbRgba8, UvMap, srgb_table,
 };
 
 use crate::support::random::Rng;
@@ -73,7 +73,19 @@ fn wrap(mode: AnyWrap, i: i64, size: i64) -> i64 {
 
 fn coordinates() -> Vec<f32> {
     let mut rng = Rng::new(110);
-    let mut list = vec![0.0, -0.0, 1.0, -1.0, 1.0_f32.next_down(), 1.0_f32.next_up(), 0.5, 2.0, -1e-10, 1e-10, 1234.5];
+    let mut list = vec![
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        1.0_f32.next_down(),
+        1.0_f32.next_up(),
+        0.5,
+        2.0,
+        -1e-10,
+        1e-10,
+        1234.5,
+    ];
     list.extend((0..150).map(|_| rng.range(-4.0, 4.0) as f32));
     list.extend((0..50).map(|_| rng.range(-1000.0, 1000.0) as f32));
     list
@@ -87,7 +99,9 @@ fn nearest_texels_are_the_integer_references() {
         let data = numbered(width, height);
         for wraps in WRAPS.into_iter().flat_map(|u| WRAPS.map(|v| (u, v))) {
             for (u, v) in coordinates().into_iter().zip(coordinates().into_iter().rev()) {
-                let place = |c: f32, size: u32, mode| wrap(mode, (c * size as f32).floor() as i64, i64::from(size));
+                let place = |c: f32, size: u32, mode| {
+                    wrap(mode, (c * size as f32).floor() as i64, i64::from(size))
+                };
                 let (x, y) = (place(u, width, wraps.0), place(v, height, wraps.1));
                 let expected = (y * i64::from(width) + x) as f32 + 1.0;
                 let got = sample(&data, &image(wraps, AnyFilter::Nearest), [u, v]);
@@ -116,7 +130,9 @@ fn bilinear_texels_are_the_f64_references() {
                 let exact = row(y0 as i64) * (1.0 - t) + row(y0 as i64 + 1) * t;
                 let got = sample(&data, &image(wraps, AnyFilter::Bilinear), [u, v]);
                 let range = f64::from(width * height);
-                worst.add((f64::from(got) - exact).abs() / range, || format!("({u}, {v}) {width} × {height} {wraps:?}"));
+                worst.add((f64::from(got) - exact).abs() / range, || {
+                    format!("({u}, {v}) {width} × {height} {wraps:?}")
+                });
             }
         }
     }
@@ -125,7 +141,18 @@ fn bilinear_texels_are_the_f64_references() {
 
 #[test]
 fn hostile_coordinates_stay_inside() {
-    let hostile = [1e8, -1e8, 3e38, -3e38, 1e20, 16_777_217.0, 1e-45, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+    let hostile = [
+        1e8,
+        -1e8,
+        3e38,
+        -3e38,
+        1e20,
+        16_777_217.0,
+        1e-45,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::NAN,
+    ];
     for (width, height) in SIZES {
         let data = numbered(width, height);
         let last = (width * height) as f32;
@@ -137,7 +164,10 @@ fn hostile_coordinates_stay_inside() {
                     let got = sample(&data, &image(wraps, AnyFilter::Bilinear), [u, v]);
                     // A coordinate without a place in the image may give NaN, which the film counts; never a
                     // texel of another image, which here would be far below 0.
-                    assert!(got.is_nan() || (0.999..=last * 1.001).contains(&got), "({u}, {v}) {wraps:?}: {got}");
+                    assert!(
+                        got.is_nan() || (0.999..=last * 1.001).contains(&got),
+                        "({u}, {v}) {wraps:?}: {got}"
+                    );
                     let finite = u.is_finite() && v.is_finite() && u.abs() < 1e37 && v.abs() < 1e37;
                     assert!(!finite || got.is_finite(), "({u}, {v}) {wraps:?}");
                 }
@@ -159,7 +189,14 @@ fn transforms_and_second_coordinates() {
     surface.uv = [[0.1, 0.9], [0.6, 0.4]];
     let at = |set: usize, transform: Option<u32>| {
         let clamped = (Clamp, Repeat);
-        let image = Image { slot: 0, uv: UvMap { set, transform }, channel: 0, wrap: clamped, filter: Nearest, format: LinearFloat };
+        let image = Image {
+            slot: 0,
+            uv: UvMap { set, transform },
+            channel: 0,
+            wrap: clamped,
+            filter: Nearest,
+            format: LinearFloat,
+        };
         image.scalar(d, &surface)
     };
     assert_eq!(at(0, None), 13.0, "column 0, row 3");
@@ -191,6 +228,13 @@ fn channels_and_formats() {
         let color = array(read(0, AnyFormat::SrgbRgba8).color(d, &surface));
         assert_eq!(color, [10, 100, 200].map(|code| exact_srgb(code) as f32));
     }
-    let full = Image { slot: 0, uv: UV, channel: 3, wrap: (Repeat, Repeat), filter: Bilinear, format: SrgbRgba8 };
+    let full = Image {
+        slot: 0,
+        uv: UV,
+        channel: 3,
+        wrap: (Repeat, Repeat),
+        filter: Bilinear,
+        format: SrgbRgba8,
+    };
     assert!((full.scalar(d, &surface) - 128.0 / 255.0).abs() < 1e-7);
 }

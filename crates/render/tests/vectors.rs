@@ -21,7 +21,8 @@ fn normalize_any_gives_unit_vectors() {
     let mut direction = Worst::default();
     let mut rng = Rng::new(20);
     for _ in 0..1_000_000 {
-        let (low, high) = [(-126.0, -120.0), (-60.0, 60.0), (120.0, 127.9), (-3.0, 3.0)][(rng.word() & 3) as usize];
+        let (low, high) = [(-126.0, -120.0), (-60.0, 60.0), (120.0, 127.9), (-3.0, 3.0)]
+            [(rng.word() & 3) as usize];
         let v = [0, 1, 2].map(|_| rng.signed_power(low, high));
         let n = vec3(v[0], v[1], v[2]).normalize_any(d);
         worst.add((length(n) - 1.0).abs(), || format!("{v:?}"));
@@ -53,7 +54,11 @@ fn normalize_any_at_the_ends() {
 fn parallel_vectors_have_no_cross_product() {
     let mut rng = Rng::new(21);
     for _ in 0..100_000 {
-        let v = vec3(rng.signed_power(-9.0, 9.0), rng.signed_power(-9.0, 9.0), rng.signed_power(-9.0, 9.0));
+        let v = vec3(
+            rng.signed_power(-9.0, 9.0),
+            rng.signed_power(-9.0, 9.0),
+            rng.signed_power(-9.0, 9.0),
+        );
         let power = 2.0_f32.powi((rng.word() % 20) as i32 - 10);
         assert_eq!(v.cross(v.scale(power)), vec3(0.0, 0.0, 0.0));
     }
@@ -106,7 +111,8 @@ fn frames_are_orthonormal_and_right_handed() {
     for n in normals() {
         let n = n.map(|c| c as f32);
         let frame = Frame::around(d, vec3(n[0], n[1], n[2]));
-        let [t, b, n] = [frame.tangent, frame.bitangent, frame.normal].map(|v| array(v).map(f64::from));
+        let [t, b, n] =
+            [frame.tangent, frame.bitangent, frame.normal].map(|v| array(v).map(f64::from));
         let handed = cross(t, b).iter().zip(n).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let errors = [dot(t, t) - 1.0, dot(b, b) - 1.0, dot(t, b), dot(t, n), dot(b, n), handed];
         worst.add(errors.into_iter().map(f64::abs).fold(0.0, f64::max), || format!("{n:?}"));

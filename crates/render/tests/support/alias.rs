@@ -4,7 +4,8 @@
 pub(crate) fn alias_table(weights: &[f64]) -> Vec<(f32, u32)> {
     let scale = weights.len() as f64 / weights.iter().sum::<f64>();
     let mut rest: Vec<f64> = weights.iter().map(|w| w * scale).collect();
-    let (mut small, mut large): (Vec<usize>, Vec<usize>) = (0..rest.len()).partition(|&k| rest[k] < 1.0);
+    let (mut small, mut large): (Vec<usize>, Vec<usize>) =
+        (0..rest.len()).partition(|&k| rest[k] < 1.0);
     let mut table: Vec<(f32, u32)> = (0..rest.len() as u32).map(|k| (1.0, k)).collect();
     while let (Some(&less), Some(&more)) = (small.last(), large.last()) {
         small.pop();

@@ -51,7 +51,12 @@ pub(crate) fn set_lights(data: &mut SceneData, records: &[Vec<u32>], weights: &[
 }
 
 /// An environment image of `width` columns, rotated about +Y, as light number 0 among the texels from word 0.
-pub(crate) fn set_environment(data: &mut SceneData, width: usize, texels: &[[f32; 3]], rotation: f64) {
+pub(crate) fn set_environment(
+    data: &mut SceneData,
+    width: usize,
+    texels: &[[f32; 3]],
+    rotation: f64,
+) {
     let height = texels.len() / width;
     let words = texels.iter().flat_map(|[r, g, b]| reals(&[*r, *g, *b, 1.0]));
     *data.buffer_mut(Buffer::Texels) = words.collect();
@@ -92,7 +97,12 @@ pub(crate) fn set_params(data: &mut SceneData, values: &[f32]) {
 }
 
 /// The point of triangle `prim` at barycentric (u, v), seen along `dir`.
-pub(crate) fn surface_at<D: Domain>(d: D, prim: u32, [u, v]: [f64; 2], dir: [f64; 3]) -> Surface<D> {
+pub(crate) fn surface_at<D: Domain>(
+    d: D,
+    prim: u32,
+    [u, v]: [f64; 2],
+    dir: [f64; 3],
+) -> Surface<D> {
     let [x, y, z] = dir.map(|c| d.lit(c));
     let hit = Hit { u: d.lit(u), v: d.lit(v), prim: d.uint(prim) };
     Surface::new(d, Attributes::default(), &hit, vec3(x, y, z))

@@ -134,7 +134,8 @@ fn chi_squared_accepts_what_is_right_and_rejects_what_is_not() {
     }
     family.assert_plausible();
     // A fifth more in a quarter of the cells is found.
-    let wrong: Vec<f64> = expected.iter().enumerate().map(|(k, e)| if k < 16 { e * 1.2 } else { *e }).collect();
+    let wrong: Vec<f64> =
+        expected.iter().enumerate().map(|(k, e)| if k < 16 { e * 1.2 } else { *e }).collect();
     assert!(chi_squared(&draw(&wrong, &mut rng), &expected) < 1e-4);
     // Counts where nothing may be are a failure.
     assert_eq!(chi_squared(&[10.0, 1.0, 10.0], &[10.0, 0.0, 10.0]), 0.0);
