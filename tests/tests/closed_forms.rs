@@ -27,7 +27,10 @@ fn diffuse(albedo: f32, emission: f32) -> Program {
         name,
         source: SourceNode::Color(ColorNode::Const([value; 3])),
     };
-    let emits = EmissionNode { radiance: Input(1), double_sided: true };
+    let emits = EmissionNode {
+        radiance: Input(1),
+        double_sided: true,
+    };
     Program {
         attributes: Attributes::default(),
         inputs: vec![input("albedo", albedo), input("emission", emission)],
@@ -46,8 +49,10 @@ fn scene(
     camera: [f32; 12],
 ) -> (Structure, SceneData) {
     let mut data = SceneData::default();
-    let positions: Vec<f32> =
-        triangles.iter().flat_map(|(t, _)| t.as_flattened().to_vec()).collect();
+    let positions: Vec<f32> = triangles
+        .iter()
+        .flat_map(|(t, _)| t.as_flattened().to_vec())
+        .collect();
     *data.buffer_mut(Buffer::Positions) = words(&positions);
     *data.buffer_mut(Buffer::Triangles) = (0..3 * triangles.len() as u32).collect();
     *data.buffer_mut(Buffer::TrianglePrograms) =
@@ -56,8 +61,9 @@ fn scene(
     *data.buffer_mut(Buffer::Camera) = words(&camera);
     data.single_sided = vec![false; triangles.len()];
     let emits = |program: u32| programs[program as usize].emission.is_some();
-    let lights: Vec<u32> =
-        (0..triangles.len() as u32).filter(|k| emits(triangles[*k as usize].1)).collect();
+    let lights: Vec<u32> = (0..triangles.len() as u32)
+        .filter(|k| emits(triangles[*k as usize].1))
+        .collect();
     let mut of_triangle = vec![NO_LIGHT; triangles.len()];
     let mut alias = vec![lights.len() as u32];
     for (light, &prim) in (0..).zip(&lights) {
@@ -66,15 +72,26 @@ fn scene(
         record.resize(RECORD as usize, 0);
         data.buffer_mut(Buffer::Lights).extend(record);
         // All lights of these scenes have the same area.
-        alias.extend([1.0_f32.to_bits(), light, (1.0 / lights.len() as f32).to_bits()]);
+        alias.extend([
+            1.0_f32.to_bits(),
+            light,
+            (1.0 / lights.len() as f32).to_bits(),
+        ]);
     }
     *data.buffer_mut(Buffer::TriangleLights) = of_triangle;
     *data.buffer_mut(Buffer::LightAlias) = alias;
     let emission = ColorNode::Const([emission; 3]);
-    let area = LightNode::Area { emission, attributes: Attributes::default() };
+    let area = LightNode::Area {
+        emission,
+        attributes: Attributes::default(),
+    };
     let structure = Structure {
         programs,
-        lights: if lights.is_empty() { vec![] } else { vec![area] },
+        lights: if lights.is_empty() {
+            vec![]
+        } else {
+            vec![area]
+        },
         camera: AnyCamera::Perspective,
         sampler: AnySampler::Sobol,
         culling: Culling::None,
@@ -90,7 +107,10 @@ fn render(
     max_depth: u32,
 ) -> Film {
     let bvh = OwnedBvh::build(data, lanes, BuildQuality::Medium);
-    let view = SceneView { buffers: data.buffers(), bvh: bvh.view() };
+    let view = SceneView {
+        buffers: data.buffers(),
+        bvh: bvh.view(),
+    };
     let interpreter = Interpreter::new(structure.clone(), lanes);
     let device = CpuDevice::new(2).expect("threads");
     let options = RenderOptions {
@@ -102,7 +122,10 @@ fn render(
         threads: 2,
     };
     let (film, _) = device.render(|| &interpreter, &view, &options, |_| ());
-    assert_eq!((film.samples(), film.invalid_samples()), (u64::from(samples), 0));
+    assert_eq!(
+        (film.samples(), film.invalid_samples()),
+        (u64::from(samples), 0)
+    );
     film
 }
 
@@ -116,8 +139,12 @@ fn cube() -> Vec<Triangle> {
                 (p[(axis + 1) % 3], p[(axis + 2) % 3]) = (u, v);
                 p
             };
-            let [a, b, c, d] =
-                [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+            let [a, b, c, d] = [
+                corner(-1.0, -1.0),
+                corner(1.0, -1.0),
+                corner(1.0, 1.0),
+                corner(-1.0, 1.0),
+            ];
             triangles.extend(if side < 0.0 {
                 [[a, b, c], [a, c, d]]
             } else {
@@ -134,7 +161,12 @@ const INSIDE: [f32; 12] = [0.1, 0.2, 0.3, 0.7, 0.0, 0.0, 0.0, 0.7, 0.0, 0.0, 0.0
 fn furnace_box_is_a_geometric_series() {
     let (albedo, emission) = (0.7_f32, 0.4_f32);
     let triangles: Vec<_> = cube().into_iter().map(|t| (t, 0)).collect();
-    let (structure, data) = scene(&triangles, vec![diffuse(albedo, emission)], emission, INSIDE);
+    let (structure, data) = scene(
+        &triangles,
+        vec![diffuse(albedo, emission)],
+        emission,
+        INSIDE,
+    );
     for depth in [1, 2, 3, 4, 8, 20] {
         let film = render(&structure, &data, LaneCount::native(), 256, depth);
         let exact = f64::from(emission) * (1.0 - f64::from(albedo).powi(depth as i32))
@@ -144,8 +176,12 @@ fn furnace_box_is_a_geometric_series() {
         // Standard error of the image's mean, from the pixels.
         let pixels = film.image();
         let n = pixels.len() as f64;
-        let spread =
-            pixels.iter().map(|p| (f64::from(p[0]) - mean).powi(2)).sum::<f64>() / (n - 1.0) / n;
+        let spread = pixels
+            .iter()
+            .map(|p| (f64::from(p[0]) - mean).powi(2))
+            .sum::<f64>()
+            / (n - 1.0)
+            / n;
         assert!(
             (mean - exact).abs() < 4.5 * spread.sqrt() + 1e-5 * exact,
             "depth {depth}: {mean} {exact}"
@@ -187,7 +223,11 @@ fn triangle_light_over_a_plane_is_lamberts_formula() {
     });
     let edge = |k: usize| {
         let (a, b) = (seen[k], seen[(k + 1) % 3]);
-        let n = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let n = [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ];
         let sine = n.iter().map(|c| c * c).sum::<f64>().sqrt();
         sine.atan2(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) * n[2] / sine
     };
@@ -202,13 +242,22 @@ fn triangle_light_over_a_plane_is_lamberts_formula() {
 fn nothing_is_black() {
     // No triangles; one triangle without light; a box without light.
     let (structure, data) = scene(&[], vec![diffuse(0.5, 0.0)], 0.0, INSIDE);
-    assert_eq!(render(&structure, &data, LaneCount::native(), 4, 5).mean(), [0.0; 3]);
+    assert_eq!(
+        render(&structure, &data, LaneCount::native(), 4, 5).mean(),
+        [0.0; 3]
+    );
     let one: Triangle = [[-2.0, -2.0, -1.0], [2.0, -2.0, -1.0], [0.0, 3.0, -1.0]];
     let (structure, data) = scene(&[(one, 0)], vec![diffuse(0.5, 0.0)], 0.0, INSIDE);
-    assert_eq!(render(&structure, &data, LaneCount::native(), 4, 5).mean(), [0.0; 3]);
+    assert_eq!(
+        render(&structure, &data, LaneCount::native(), 4, 5).mean(),
+        [0.0; 3]
+    );
     let triangles: Vec<_> = cube().into_iter().map(|t| (t, 0)).collect();
     let (structure, data) = scene(&triangles, vec![diffuse(0.9, 0.0)], 0.0, INSIDE);
-    assert_eq!(render(&structure, &data, LaneCount::native(), 4, 9).mean(), [0.0; 3]);
+    assert_eq!(
+        render(&structure, &data, LaneCount::native(), 4, 9).mean(),
+        [0.0; 3]
+    );
 }
 
 #[test]

@@ -90,7 +90,7 @@ impl OwnedBvh {
     /// Builds the hierarchy over a scene's triangles.
     pub fn build(data: &SceneData, lanes: LaneCount, quality: BuildQuality) -> Self {
         let (positions, triangles) = (data.positions(), data.triangles());
-        let sides = Some(data.single_sided.as_slice());
+        let sides = (!data.single_sided.is_empty()).then_some(data.single_sided.as_slice());
         match lanes {
             LaneCount::One | LaneCount::Four => {
                 Self::Four(build(&positions, &triangles, sides, quality))

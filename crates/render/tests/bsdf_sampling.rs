@@ -40,7 +40,11 @@ struct Chart {
 impl Chart {
     fn new(wo: [f64; 3], scale: f64) -> Self {
         // No half vector has a cosine below half that of `wo`.
-        Self { wo, scale, range: (4.0 / (wo[2] * scale).powi(2)).ln_1p() }
+        Self {
+            wo,
+            scale,
+            range: (4.0 / (wo[2] * scale).powi(2)).ln_1p(),
+        }
     }
 
     /// The cell of a direction; the last one for directions off the chart.
@@ -70,8 +74,10 @@ impl Chart {
 
     /// What the density holds in a cell, by midpoints, and at how many of them it is not 0.
     fn mass(&self, cell: usize, steps: usize, pdf: &impl Fn([f64; 3]) -> f64) -> (f64, usize) {
-        let corner =
-            [(cell / SECTORS) as f64 / RINGS as f64, (cell % SECTORS) as f64 / SECTORS as f64];
+        let corner = [
+            (cell / SECTORS) as f64 / RINGS as f64,
+            (cell % SECTORS) as f64 / SECTORS as f64,
+        ];
         let side = |k: usize| (k as f64 + 0.5) / steps as f64;
         let (mut sum, mut full) = (0.0, 0);
         for k in 0..steps * steps {
@@ -86,24 +92,35 @@ impl Chart {
 
     /// What the density holds in each cell; in finer steps where it ends in the cell or may do so.
     fn masses(&self, pdf: impl Fn([f64; 3]) -> f64) -> Vec<f64> {
-        let coarse: Vec<_> =
-            (0..RINGS * SECTORS).map(|cell| self.mass(cell, STEPS, &pdf)).collect();
+        let coarse: Vec<_> = (0..RINGS * SECTORS)
+            .map(|cell| self.mass(cell, STEPS, &pdf))
+            .collect();
         let at =
             |ring: usize, sector: usize| coarse[ring.min(RINGS - 1) * SECTORS + sector % SECTORS].1;
         let uniform = |cell: usize| {
             let (ring, sector) = (cell / SECTORS, cell % SECTORS);
-            let around =
-                [at(ring.saturating_sub(1), sector), at(ring + 1, sector), at(ring, sector + 1)];
-            let all =
-                [around[0], around[1], around[2], at(ring, sector + SECTORS - 1), coarse[cell].1];
+            let around = [
+                at(ring.saturating_sub(1), sector),
+                at(ring + 1, sector),
+                at(ring, sector + 1),
+            ];
+            let all = [
+                around[0],
+                around[1],
+                around[2],
+                at(ring, sector + SECTORS - 1),
+                coarse[cell].1,
+            ];
             all == [STEPS * STEPS; 5] || all == [0; 5]
         };
         (0..coarse.len())
-            .map(
-                |cell| {
-                    if uniform(cell) { coarse[cell].0 } else { self.mass(cell, EDGE_STEPS, &pdf).0 }
-                },
-            )
+            .map(|cell| {
+                if uniform(cell) {
+                    coarse[cell].0
+                } else {
+                    self.mass(cell, EDGE_STEPS, &pdf).0
+                }
+            })
             .collect()
     }
 }
@@ -134,7 +151,11 @@ impl<B: for<'b> Bsdf<Scalar<'b>> + for<'b> Bsdf<Precise<'b>>> Case<'_, B> {
         let chart = Chart::new(unit(double(wo)), self.scale);
         let mut masses = chart.masses(|wi| self.exact(&buffers, chart.wo, wi).1);
         let total: f64 = masses.iter().sum();
-        assert!(total < 1.0 + 2e-3, "{} cos {cos}: density integrates to {total}", self.name);
+        assert!(
+            total < 1.0 + 2e-3,
+            "{} cos {cos}: density integrates to {total}",
+            self.name
+        );
         for mass in masses.iter_mut().step_by(2) {
             *mass *= 1.0 + bias;
         }
@@ -147,7 +168,10 @@ impl<B: for<'b> Bsdf<Scalar<'b>> + for<'b> Bsdf<Precise<'b>>> Case<'_, B> {
             let sample = self.bsdf.sample(d, &surface, wo, u);
             let place = || format!("{} cos {cos}, {u:?}: {sample:?}", self.name);
             assert!(
-                array(sample.wi).iter().chain(&array(sample.weight)).all(|c| c.is_finite()),
+                array(sample.wi)
+                    .iter()
+                    .chain(&array(sample.weight))
+                    .all(|c| c.is_finite()),
                 "{}",
                 place()
             );
@@ -162,7 +186,10 @@ impl<B: for<'b> Bsdf<Scalar<'b>> + for<'b> Bsdf<Precise<'b>>> Case<'_, B> {
             assert!((length2 - 1.0).abs() < 2e-6, "{}", place());
             let (value, pdf) = self.exact(&buffers, double(wo), wi);
             let again = self.bsdf.eval(d, &surface, wo, sample.wi);
-            pdfs.add((f64::from(again.pdf) / f64::from(sample.pdf) - 1.0).abs(), place);
+            pdfs.add(
+                (f64::from(again.pdf) / f64::from(sample.pdf) - 1.0).abs(),
+                place,
+            );
             if wi[2] > 1e-3 {
                 for (weight, value) in array(sample.weight).into_iter().zip(value) {
                     weights.add(
@@ -174,8 +201,10 @@ impl<B: for<'b> Bsdf<Scalar<'b>> + for<'b> Bsdf<Precise<'b>>> Case<'_, B> {
         }
         let sum: f64 = masses.iter().sum();
         // Never exactly 0: where the quadrature misses the rim of the density, samples are pooled, not forbidden.
-        let expected: Vec<f64> =
-            masses.iter().map(|mass| (mass / sum * SAMPLES as f64).max(1e-3)).collect();
+        let expected: Vec<f64> = masses
+            .iter()
+            .map(|mass| (mass / sum * SAMPLES as f64).max(1e-3))
+            .collect();
         chi_squared(&counts, &expected)
     }
 
@@ -187,9 +216,14 @@ impl<B: for<'b> Bsdf<Scalar<'b>> + for<'b> Bsdf<Precise<'b>>> Case<'_, B> {
             println!("{} cos {cos}: p = {p:.4}", self.name);
             family.add(p, format!("{} cos {cos}", self.name));
         }
-        weights
-            .assert_below(weight_bound, &format!("{}: weight against value ÷ density", self.name));
-        pdfs.assert_below(pdf_bound, &format!("{}: density sampled against evaluated", self.name));
+        weights.assert_below(
+            weight_bound,
+            &format!("{}: weight against value ÷ density", self.name),
+        );
+        pdfs.assert_below(
+            pdf_bound,
+            &format!("{}: density sampled against evaluated", self.name),
+        );
     }
 }
 
@@ -197,7 +231,10 @@ const WHITE: Const<[f32; 3]> = Const([1.0; 3]);
 const BASE: Const<[f32; 3]> = Const([0.8, 0.5, 0.3]);
 
 fn conductor(roughness: f32) -> Conductor<Const<[f32; 3]>, Const<f32>> {
-    Conductor { color: BASE, roughness: Const(roughness) }
+    Conductor {
+        color: BASE,
+        roughness: Const(roughness),
+    }
 }
 fn glossy(roughness: f32) -> Glossy<Const<[f32; 3]>, Const<f32>, Const<[f32; 3]>, Const<f32>> {
     Glossy {
@@ -215,11 +252,13 @@ fn alpha(roughness: f32) -> f64 {
 fn diffuse() {
     let data = scene(&[FLOOR]);
     let mut family = Family::default();
-    Case { name: "diffuse".into(), bsdf: Diffuse { albedo: BASE }, scale: 1.0, data: &data }.check(
-        &mut family,
-        1e-6,
-        1e-6,
-    );
+    Case {
+        name: "diffuse".into(),
+        bsdf: Diffuse { albedo: BASE },
+        scale: 1.0,
+        data: &data,
+    }
+    .check(&mut family, 1e-6, 1e-6);
     family.assert_plausible();
 }
 
@@ -229,11 +268,13 @@ fn conductors() {
     let mut family = Family::default();
     for roughness in [0.05, 0.2, 0.5, 1.0] {
         let name = format!("conductor {roughness}");
-        Case { name, bsdf: conductor(roughness), scale: alpha(roughness), data: &data }.check(
-            &mut family,
-            1e-4,
-            5e-2,
-        );
+        Case {
+            name,
+            bsdf: conductor(roughness),
+            scale: alpha(roughness),
+            data: &data,
+        }
+        .check(&mut family, 1e-4, 5e-2);
     }
     family.assert_plausible();
 }
@@ -244,11 +285,13 @@ fn glossies() {
     let mut family = Family::default();
     for roughness in [0.05, 0.2, 0.5, 1.0] {
         let name = format!("glossy {roughness}");
-        Case { name, bsdf: glossy(roughness), scale: alpha(roughness), data: &data }.check(
-            &mut family,
-            1e-4,
-            1e-5,
-        );
+        Case {
+            name,
+            bsdf: glossy(roughness),
+            scale: alpha(roughness),
+            data: &data,
+        }
+        .check(&mut family, 1e-4, 1e-5);
     }
     family.assert_plausible();
 }
@@ -258,13 +301,18 @@ fn phongs() {
     let data = scene(&[FLOOR]);
     let mut family = Family::default();
     for exponent in [1.0, 20.0, 500.0] {
-        let bsdf = Phong { color: BASE, exponent: Const(exponent) };
+        let bsdf = Phong {
+            color: BASE,
+            exponent: Const(exponent),
+        };
         let scale = (1.0 / (f64::from(exponent) + 2.0)).sqrt();
-        Case { name: format!("phong {exponent}"), bsdf, scale, data: &data }.check(
-            &mut family,
-            1e-4,
-            1e-5,
-        );
+        Case {
+            name: format!("phong {exponent}"),
+            bsdf,
+            scale,
+            data: &data,
+        }
+        .check(&mut family, 1e-4, 1e-5);
     }
     family.assert_plausible();
 }
@@ -273,18 +321,50 @@ fn phongs() {
 fn combinations() {
     let data = scene(&[FLOOR]);
     let mut family = Family::default();
-    let mix = Mix { a: Diffuse { albedo: BASE }, b: conductor(0.2), weight: Const(0.3) };
-    Case { name: "mix".into(), bsdf: mix, scale: 0.04, data: &data }.check(&mut family, 1e-4, 1e-5);
-    let phong = Phong { color: BASE, exponent: Const(50.0) };
-    let sum = Sum { a: Diffuse { albedo: BASE }, b: phong, probability: Const(0.6) };
-    Case { name: "sum".into(), bsdf: sum, scale: 0.14, data: &data }.check(&mut family, 1e-3, 1e-5);
-    let nested =
-        Mix { a: sum, b: Mix { a: glossy(0.3), b: mix, weight: Const(0.5) }, weight: Const(0.75) };
-    Case { name: "nested".into(), bsdf: nested, scale: 0.04, data: &data }.check(
-        &mut family,
-        1e-4,
-        1e-5,
-    );
+    let mix = Mix {
+        a: Diffuse { albedo: BASE },
+        b: conductor(0.2),
+        weight: Const(0.3),
+    };
+    Case {
+        name: "mix".into(),
+        bsdf: mix,
+        scale: 0.04,
+        data: &data,
+    }
+    .check(&mut family, 1e-4, 1e-5);
+    let phong = Phong {
+        color: BASE,
+        exponent: Const(50.0),
+    };
+    let sum = Sum {
+        a: Diffuse { albedo: BASE },
+        b: phong,
+        probability: Const(0.6),
+    };
+    Case {
+        name: "sum".into(),
+        bsdf: sum,
+        scale: 0.14,
+        data: &data,
+    }
+    .check(&mut family, 1e-3, 1e-5);
+    let nested = Mix {
+        a: sum,
+        b: Mix {
+            a: glossy(0.3),
+            b: mix,
+            weight: Const(0.5),
+        },
+        weight: Const(0.75),
+    };
+    Case {
+        name: "nested".into(),
+        bsdf: nested,
+        scale: 0.04,
+        data: &data,
+    }
+    .check(&mut family, 1e-4, 1e-5);
     family.assert_plausible();
 }
 
@@ -292,9 +372,18 @@ fn combinations() {
 fn perturbed_densities_are_rejected() {
     let data = scene(&[FLOOR]);
     let (mut weights, mut pdfs) = (Worst::default(), Worst::default());
-    let case = Case { name: "conductor".into(), bsdf: conductor(0.5), scale: 0.25, data: &data };
+    let case = Case {
+        name: "conductor".into(),
+        bsdf: conductor(0.5),
+        scale: 0.25,
+        data: &data,
+    };
     assert!(case.run(0.5, 80, 0.2, &mut weights, &mut pdfs) < 1e-4);
-    let case =
-        Case { name: "diffuse".into(), bsdf: Diffuse { albedo: WHITE }, scale: 1.0, data: &data };
+    let case = Case {
+        name: "diffuse".into(),
+        bsdf: Diffuse { albedo: WHITE },
+        scale: 1.0,
+        data: &data,
+    };
     assert!(case.run(0.5, 81, 0.2, &mut weights, &mut pdfs) < 1e-4);
 }

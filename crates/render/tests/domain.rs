@@ -32,8 +32,10 @@ const ROWS: usize = 2048;
 fn evaluate<D: Lanes>(d: D, formula: &impl Formula, columns: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let mut results: Vec<Vec<u32>> = Vec::new();
     for first in (0..ROWS).step_by(D::LANES) {
-        let x: Vec<_> =
-            columns.iter().map(|column| d.word(&column[first..first + D::LANES])).collect();
+        let x: Vec<_> = columns
+            .iter()
+            .map(|column| d.word(&column[first..first + D::LANES]))
+            .collect();
         for (k, result) in formula.run(d, &x).into_iter().enumerate() {
             if results.len() <= k {
                 results.push(vec![0; ROWS]);
@@ -55,8 +57,10 @@ fn check(name: &str, data: &SceneData, formula: &impl Formula, columns: &[Vec<u3
     let compare = |lanes: usize, results: Vec<Vec<u32>>| {
         for (k, (result, expected)) in results.iter().zip(&expected).enumerate() {
             for row in 0..ROWS {
-                let input: Vec<_> =
-                    columns.iter().map(|c| (c[row], f32::from_bits(c[row]))).collect();
+                let input: Vec<_> = columns
+                    .iter()
+                    .map(|c| (c[row], f32::from_bits(c[row])))
+                    .collect();
                 let (a, b) = (expected[row], result[row]);
                 assert!(
                     same(a, b),
@@ -107,7 +111,15 @@ fn any_bits(count: usize, seed: u64) -> Vec<Vec<u32>> {
     let special = |row: usize, k: usize| SPECIAL[(row >> (4 * (k % 2))) & 15].to_bits();
     (0..count)
         .map(|k| {
-            (0..ROWS).map(|row| if row < 256 { special(row, k) } else { rng.bits() }).collect()
+            (0..ROWS)
+                .map(|row| {
+                    if row < 256 {
+                        special(row, k)
+                    } else {
+                        rng.bits()
+                    }
+                })
+                .collect()
         })
         .collect()
 }
@@ -185,7 +197,12 @@ impl Formula for Operations {
 
 #[test]
 fn operations_agree() {
-    check("operations", &scene(&[FLOOR]), &Operations, &any_bits(5, 40));
+    check(
+        "operations",
+        &scene(&[FLOOR]),
+        &Operations,
+        &any_bits(5, 40),
+    );
     // Numbers of like size, whose results are not all infinite or 0.
     let near = reals(41, |r| [0; 5].map(|_| r.signed_power(-3.0, 30.0)));
     check("operations", &scene(&[FLOOR]), &Operations, &near);
@@ -212,8 +229,18 @@ impl Formula for Elementary {
         let (r, g) = fresnel(d, b, d.abs(a) + d.lit(0.5));
         let frame = Frame::around(d, v.normalize_any(d));
         let size = d.abs(a);
-        let scalars =
-            [sin, cos, atan2(d, a, b), exp2(d, a), log2(d, size), pow(d, size, b), p, q, r, g];
+        let scalars = [
+            sin,
+            cos,
+            atan2(d, a, b),
+            exp2(d, a),
+            log2(d, size),
+            pow(d, size, b),
+            p,
+            q,
+            r,
+            g,
+        ];
         let vectors = [
             v.normalize_any(d),
             v.normalize(d),
@@ -223,7 +250,12 @@ impl Formula for Elementary {
             frame.bitangent,
             frame.to_local(d, vec3(c, b, a)),
         ];
-        words(d, scalars.into_iter().chain(vectors.into_iter().flat_map(vector)))
+        words(
+            d,
+            scalars
+                .into_iter()
+                .chain(vectors.into_iter().flat_map(vector)),
+        )
     }
 }
 
@@ -244,7 +276,12 @@ impl Formula for Samplers {
 
 #[test]
 fn samplers_agree() {
-    check("samplers", &SceneData::default(), &Samplers, &any_bits(5, 44));
+    check(
+        "samplers",
+        &SceneData::default(),
+        &Samplers,
+        &any_bits(5, 44),
+    );
 }
 
 fn bsdf_words<D: Domain>(d: D, bsdf: &impl Bsdf<D>, x: &[D::U]) -> Vec<D::U> {
@@ -253,8 +290,13 @@ fn bsdf_words<D: Domain>(d: D, bsdf: &impl Bsdf<D>, x: &[D::U]) -> Vec<D::U> {
     let surface = floor(d);
     let value = bsdf.eval(d, &surface, wo, wi);
     let sample = bsdf.sample(d, &surface, wo, [x[6], x[7], x[8]]);
-    let vectors = [value.value, sample.wi, sample.weight].into_iter().flat_map(vector);
-    words(d, vectors.chain([value.pdf, sample.pdf, truth(d, sample.delta)]))
+    let vectors = [value.value, sample.wi, sample.weight]
+        .into_iter()
+        .flat_map(vector);
+    words(
+        d,
+        vectors.chain([value.pdf, sample.pdf, truth(d, sample.delta)]),
+    )
 }
 
 macro_rules! check_bsdfs {
@@ -298,7 +340,10 @@ fn bsdfs_agree() {
 struct Light<K>(K);
 fn light_words<D: Domain>(d: D, s: LightSample<D>) -> Vec<D::U> {
     let vectors = [s.wi, s.position, s.radiance].into_iter().flat_map(vector);
-    words(d, vectors.chain([s.pdf, truth(d, s.infinite), truth(d, s.delta)]))
+    words(
+        d,
+        vectors.chain([s.pdf, truth(d, s.infinite), truth(d, s.delta)]),
+    )
 }
 macro_rules! light_formula {
     ($($kind:ty),*) => {$(
@@ -327,11 +372,16 @@ fn lights_agree() {
     let lamp = [[0.3, -0.2, 2.0], [0.4, 1.1, 2.5], [1.7, 0.1, 1.5]];
     let mut data = scene(&[FLOOR, lamp]);
     let inputs = reals(46, |r| [0; 5].map(|_| r.unit()));
-    let area = Area { emission: Const([3.0, 2.0, 1.0]), attributes: Attributes::default() };
+    let area = Area {
+        emission: Const([3.0, 2.0, 1.0]),
+        attributes: Attributes::default(),
+    };
     set_lights(&mut data, &[vec![0, 1, 1]], &[1.0]);
     check("area", &data, &Light(area), &inputs);
     let punctual = [0.3, 0.2, 0.933, 5.0, 4.0, 3.0, 0.0, 0.0, -1.0, 2.0, -0.5];
-    let record = std::iter::once(0).chain(punctual.map(f32::to_bits)).collect();
+    let record = std::iter::once(0)
+        .chain(punctual.map(f32::to_bits))
+        .collect();
     set_lights(&mut data, &[record], &[1.0]);
     check("point", &data, &Light(Point), &inputs);
     check("spot", &data, &Light(Spot), &inputs);
@@ -348,7 +398,12 @@ impl Formula for Texture {
         let mut surface = floor(d);
         surface.uv[0] = [d.from_bits(x[0]), d.from_bits(x[1])];
         let scalar = self.0.scalar(d, &surface);
-        words(d, vector(self.0.color(d, &surface)).into_iter().chain([scalar]))
+        words(
+            d,
+            vector(self.0.color(d, &surface))
+                .into_iter()
+                .chain([scalar]),
+        )
     }
 }
 
@@ -358,11 +413,20 @@ fn textures_agree() {
     let mut rng = Rng::new(48);
     *data.buffer_mut(Buffer::Texels) = (0..4 * 35).map(|_| rng.bits() & 0xbf7f_ffff).collect();
     set_params(&mut data, &[0, 5, 7].map(f32::from_bits));
-    let moderate = reals(49, |r| [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]);
+    let moderate = reals(49, |r| {
+        [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]
+    });
     for wrap in [AnyWrap::Repeat, AnyWrap::Mirror, AnyWrap::Clamp] {
         for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
-            for format in [AnyFormat::SrgbRgba8, AnyFormat::LinearRgba8, AnyFormat::LinearFloat] {
-                let uv = UvMap { set: 0, transform: None };
+            for format in [
+                AnyFormat::SrgbRgba8,
+                AnyFormat::LinearRgba8,
+                AnyFormat::LinearFloat,
+            ] {
+                let uv = UvMap {
+                    set: 0,
+                    transform: None,
+                };
                 let image = Image {
                     slot: 0,
                     uv,
@@ -388,5 +452,10 @@ fn differences_are_found() {
             words(d, [d.lit(if D::LANES == 8 { 1.0 } else { 0.0 })])
         }
     }
-    check("differs", &SceneData::default(), &LaneCounted, &any_bits(1, 51));
+    check(
+        "differs",
+        &SceneData::default(),
+        &LaneCounted,
+        &any_bits(1, 51),
+    );
 }

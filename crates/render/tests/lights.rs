@@ -32,7 +32,11 @@ const LAMP: Area<Const<[f32; 3]>> = Area {
 /// Contribution of a sample to the irradiance on a surface with this normal.
 fn irradiance<'a>(sample: &LightSample<Scalar<'a>>, normal: [f64; 3]) -> f64 {
     let cos = dot(array(sample.wi).map(f64::from), normal).max(0.0);
-    if cos == 0.0 { 0.0 } else { f64::from(sample.radiance.x) * cos / f64::from(sample.pdf) }
+    if cos == 0.0 {
+        0.0
+    } else {
+        f64::from(sample.radiance.x) * cos / f64::from(sample.pdf)
+    }
 }
 
 /// Mean of the contributions at the middle of triangle 0.
@@ -50,7 +54,10 @@ fn estimate<L: for<'a> LightKinds<Scalar<'a>>>(
     let mut mean = Mean::default();
     for _ in 0..n {
         let [a, b, c] = rng.unit3();
-        mean.add(irradiance(&light::sample(d, lights, &surface, [a, b, c, rng.unit()]), normal));
+        mean.add(irradiance(
+            &light::sample(d, lights, &surface, [a, b, c, rng.unit()]),
+            normal,
+        ));
     }
     mean
 }
@@ -58,8 +65,10 @@ fn estimate<L: for<'a> LightKinds<Scalar<'a>>>(
 /// Lambert's formula for the irradiance of a polygon of radiance 1 that is wholly above the horizon.
 fn lambert(vertices: &[[f64; 3]], from: [f64; 3], normal: [f64; 3]) -> f64 {
     let n = vertices.len();
-    let seen: Vec<_> =
-        vertices.iter().map(|v| unit([v[0] - from[0], v[1] - from[1], v[2] - from[2]])).collect();
+    let seen: Vec<_> = vertices
+        .iter()
+        .map(|v| unit([v[0] - from[0], v[1] - from[1], v[2] - from[2]]))
+        .collect();
     let edge = |k: usize| {
         let (a, b) = (seen[k], seen[(k + 1) % n]);
         let normal_of_edge = cross(a, b);
@@ -82,8 +91,10 @@ fn triangles_shine_as_lambert_says() {
     let mut squares = 0.0;
     let count = 200;
     for k in 0..count {
-        let (height, size) =
-            (10.0_f64.powf(rng.range(-0.5, 1.0)), 10.0_f64.powf(rng.range(-1.0, 0.7)));
+        let (height, size) = (
+            10.0_f64.powf(rng.range(-0.5, 1.0)),
+            10.0_f64.powf(rng.range(-1.0, 0.7)),
+        );
         let centre = [rng.range(-3.0, 3.0), rng.range(-3.0, 3.0), height + size];
         let lamp: Triangle = [0; 3].map(|_| {
             let v = rng.direction();
@@ -110,11 +121,21 @@ fn one_sided_and_degenerate_triangles() {
     let down: Triangle = [up[0], up[2], up[1]];
     let line: Triangle = [up[0], up[0], up[1]];
     let edge_on: Triangle = [[0.0, 0.5, 1.0], [0.0, 0.5, 2.0], [0.0, -0.5, 1.5]];
-    for (lamp, both, shines) in [(down, 0, true), (up, 0, false), (up, 1, true), (line, 1, false)] {
+    for (lamp, both, shines) in [
+        (down, 0, true),
+        (up, 0, false),
+        (up, 1, true),
+        (line, 1, false),
+    ] {
         let mut data = scene(&[FLOOR, lamp]);
         set_lights(&mut data, &[vec![0, 1, both]], &[1.0]);
         let mean = estimate(&data, &(LAMP, ()), [0.0, 0.0, 1.0], 1000, 130);
-        assert_eq!(mean.value() > 0.0, shines, "{lamp:?} {both}: {}", mean.value());
+        assert_eq!(
+            mean.value() > 0.0,
+            shines,
+            "{lamp:?} {both}: {}",
+            mean.value()
+        );
         assert!(mean.value().is_finite());
     }
     // Seen edge on, up to the rounding of the point that it is seen from.
@@ -124,7 +145,10 @@ fn one_sided_and_degenerate_triangles() {
     // The point lies on the light itself.
     let mut data = scene(&[FLOOR]);
     set_lights(&mut data, &[vec![0, 0, 1]], &[1.0]);
-    assert_eq!(estimate(&data, &(LAMP, ()), [0.0, 0.0, 1.0], 1000, 131).value(), 0.0);
+    assert_eq!(
+        estimate(&data, &(LAMP, ()), [0.0, 0.0, 1.0], 1000, 131).value(),
+        0.0
+    );
 }
 
 #[test]
@@ -139,12 +163,22 @@ fn density_of_a_light_is_the_same_from_both_sides() {
     for _ in 0..10_000 {
         let sample = LAMP.sample(d, Uint(0), &floor(d), rng.unit3());
         let (b1, b2) = residual_render::math::warp::triangle(d, [rng.unit(), rng.unit()]);
-        let hit = surface_at(d, 1, [f64::from(b1), f64::from(b2)], array(sample.wi).map(f64::from));
+        let hit = surface_at(
+            d,
+            1,
+            [f64::from(b1), f64::from(b2)],
+            array(sample.wi).map(f64::from),
+        );
         assert!(sample.pdf > 0.0 && hit.cos_geometric > 0.0);
         // ∫ 1 dω over the lamp by either density: pdf · cos · area ÷ distance² = 1.
         let from = floor(d).point;
         let away = hit.point - from;
-        let there = surface_at(d, 1, [f64::from(b1), f64::from(b2)], array(away).map(f64::from));
+        let there = surface_at(
+            d,
+            1,
+            [f64::from(b1), f64::from(b2)],
+            array(away).map(f64::from),
+        );
         let pdf = light::area_pdf(d, &there, away.length(d));
         let cos = f64::from(there.cos_geometric) * f64::from(there.area)
             / f64::from(away.length(d)).powi(2);
@@ -154,7 +188,9 @@ fn density_of_a_light_is_the_same_from_both_sides() {
 }
 
 fn record(values: &[f32]) -> Vec<u32> {
-    std::iter::once(0).chain(values.iter().map(|v| v.to_bits())).collect()
+    std::iter::once(0)
+        .chain(values.iter().map(|v| v.to_bits()))
+        .collect()
 }
 
 #[test]
@@ -177,7 +213,11 @@ fn punctual_lights_are_their_closed_forms() {
         let (d2, wi) = (dot(away, away), unit(away));
         let exact = f64::from(intensity) / d2 * dot(wi, normal).max(0.0);
         let [x, y, z] = place;
-        set_lights(&mut data, &[record(&[x, y, z, intensity, 0.0, 0.0])], &[1.0]);
+        set_lights(
+            &mut data,
+            &[record(&[x, y, z, intensity, 0.0, 0.0])],
+            &[1.0],
+        );
         close(estimate(&data, &(Point, ()), normal, 2, 134), exact, 1e-5);
         // A spot of KHR_lights_punctual: inner and outer cone angles of 0.2 and 0.6.
         let axis = unit([0.1, 0.2, -1.0]);
@@ -185,11 +225,31 @@ fn punctual_lights_are_their_closed_forms() {
         let scale = 1.0 / (inner - outer);
         let falloff = ((-dot(axis, wi) - outer) * scale).clamp(0.0, 1.0).powi(2);
         let [a, b, c] = axis.map(|c| c as f32);
-        let spot = [x, y, z, intensity, 0.0, 0.0, a, b, c, scale as f32, (-outer * scale) as f32];
+        let spot = [
+            x,
+            y,
+            z,
+            intensity,
+            0.0,
+            0.0,
+            a,
+            b,
+            c,
+            scale as f32,
+            (-outer * scale) as f32,
+        ];
         set_lights(&mut data, &[record(&spot)], &[1.0]);
-        close(estimate(&data, &(Spot, ()), normal, 2, 135), exact * falloff, 1e-3);
+        close(
+            estimate(&data, &(Spot, ()), normal, 2, 135),
+            exact * falloff,
+            1e-3,
+        );
         let [a, b, c] = wi.map(|c| c as f32);
-        set_lights(&mut data, &[record(&[a, b, c, intensity, 0.0, 0.0])], &[1.0]);
+        set_lights(
+            &mut data,
+            &[record(&[a, b, c, intensity, 0.0, 0.0])],
+            &[1.0],
+        );
         close(
             estimate(&data, &(Directional, ()), normal, 2, 136),
             f64::from(intensity) * dot(wi, normal).max(0.0),
@@ -199,12 +259,18 @@ fn punctual_lights_are_their_closed_forms() {
     // A light at the point itself is finite.
     let [x, y, z] = point.map(|c| c as f32);
     set_lights(&mut data, &[record(&[x, y, z, 1.0, 0.0, 0.0])], &[1.0]);
-    assert!(estimate(&data, &(Point, ()), normal, 2, 137).value().is_finite());
+    assert!(
+        estimate(&data, &(Point, ()), normal, 2, 137)
+            .value()
+            .is_finite()
+    );
 }
 
 /// A map with a faint gradient and one bright texel.
 fn sunny(width: usize, height: usize) -> Vec<[f32; 3]> {
-    let mut texels: Vec<_> = (0..width * height).map(|k| [0.5 + 0.1 * (k % 5) as f32; 3]).collect();
+    let mut texels: Vec<_> = (0..width * height)
+        .map(|k| [0.5 + 0.1 * (k % 5) as f32; 3])
+        .collect();
     texels[width * (height / 3) + width / 2 + 1] = [1000.0; 3];
     texels
 }
@@ -246,9 +312,14 @@ fn environments_shine_as_their_quadrature_says() {
         let mut data = scene(&[FLOOR]);
         set_environment(&mut data, width, &texels, rotation);
         for plane in 0..6 {
-            let normal = if plane == 0 { [0.0, 0.0, 1.0] } else { rng.direction() };
-            let exact =
-                over_sphere(0.0, 900, 450, |dir| seen(&data, dir).0 * dot(dir, normal).max(0.0));
+            let normal = if plane == 0 {
+                [0.0, 0.0, 1.0]
+            } else {
+                rng.direction()
+            };
+            let exact = over_sphere(0.0, 900, 450, |dir| {
+                seen(&data, dir).0 * dot(dir, normal).max(0.0)
+            });
             if k == 0 {
                 assert!((exact - PI).abs() < 1e-3, "{exact}");
             }
@@ -269,7 +340,11 @@ fn environment_densities_integrate_to_one() {
         set_environment(
             &mut data,
             width,
-            &if width == 1 { vec![[1.0; 3]] } else { sunny(width, height) },
+            &if width == 1 {
+                vec![[1.0; 3]]
+            } else {
+                sunny(width, height)
+            },
             rotation,
         );
         // Steps that divide texels, so that none lies in two.
@@ -302,9 +377,10 @@ fn environment_samples_see_what_they_were_drawn_with() {
             elsewhere += 1;
         } else {
             worst.add(error, || format!("{u:?}"));
-            worst.add((radiance / f64::from(sample.radiance.x) - 1.0).abs() / 10.0, || {
-                format!("radiance {u:?}")
-            });
+            worst.add(
+                (radiance / f64::from(sample.radiance.x) - 1.0).abs() / 10.0,
+                || format!("radiance {u:?}"),
+            );
         }
         let angle = (wi[2].atan2(wi[0]) + 0.8).rem_euclid(2.0 * PI);
         let column = ((angle / (2.0 * PI) + 0.5).rem_euclid(1.0) * width as f64) as usize;
@@ -313,21 +389,29 @@ fn environment_samples_see_what_they_were_drawn_with() {
     }
     unit_length.assert_below(1e-6, "environment directions, |length² − 1|");
     worst.assert_below(1e-4, "environment, sampled against seen");
-    assert!(elsewhere < n / 10_000, "{elsewhere} of {n} samples in the neighbouring texel");
+    assert!(
+        elsewhere < n / 10_000,
+        "{elsewhere} of {n} samples in the neighbouring texel"
+    );
     // Frequencies of texels are those of the table.
     let words = data.buffer(residual_render::domain::Buffer::Environment);
     let density = |k: usize| f64::from(f32::from_bits(words[8 + 3 * k + 2]));
-    let expected: Vec<_> =
-        (0..width * height).map(|k| density(k) / (width * height) as f64 * n as f64).collect();
-    assert!(chi_squared(&counts, &expected) > 0.001, "{counts:?} {expected:?}");
+    let expected: Vec<_> = (0..width * height)
+        .map(|k| density(k) / (width * height) as f64 * n as f64)
+        .collect();
+    assert!(
+        chi_squared(&counts, &expected) > 0.001,
+        "{counts:?} {expected:?}"
+    );
 }
 
 #[test]
 fn lights_are_picked_by_their_weights() {
     let mut data = scene(&[FLOOR]);
     let weights = [5.0, 0.0, 1.0, 2.5, 0.01, 40.0, 3.0];
-    let records: Vec<_> =
-        (0..7).map(|k| record(&[0.0, 0.0, 1.0, k as f32 + 1.0, 0.0, 0.0])).collect();
+    let records: Vec<_> = (0..7)
+        .map(|k| record(&[0.0, 0.0, 1.0, k as f32 + 1.0, 0.0, 0.0]))
+        .collect();
     set_lights(&mut data, &records, &weights);
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
@@ -343,7 +427,10 @@ fn lights_are_picked_by_their_weights() {
         assert_eq!(sample.pdf, light::pick_probability(d, Uint(light as u32)));
     }
     let expected: Vec<_> = weights.iter().map(|w| w / total * n).collect();
-    assert!(chi_squared(&counts, &expected) > 0.001, "{counts:?} {expected:?}");
+    assert!(
+        chi_squared(&counts, &expected) > 0.001,
+        "{counts:?} {expected:?}"
+    );
     // Kinds: the number in the record decides.
     let mut both = record(&[0.0, 0.0, 2.0, 7.0, 0.0, 0.0]);
     both[0] = 1;
@@ -372,12 +459,22 @@ fn power_heuristic_weighs_to_one() {
         (1.0, 3.0, 0.1),
     ];
     for (a, b, weight) in table {
-        assert!((weigh(a, b) - weight).abs() < 1e-7, "{a} {b}: {}", weigh(a, b));
+        assert!(
+            (weigh(a, b) - weight).abs() < 1e-7,
+            "{a} {b}: {}",
+            weigh(a, b)
+        );
     }
     let mut rng = Rng::new(161);
     for _ in 0..200_000 {
-        let (a, b) = (rng.signed_power(-60.0, 60.0).abs(), rng.signed_power(-60.0, 60.0).abs());
+        let (a, b) = (
+            rng.signed_power(-60.0, 60.0).abs(),
+            rng.signed_power(-60.0, 60.0).abs(),
+        );
         let sum = f64::from(weigh(a, b)) + f64::from(weigh(b, a));
-        assert!((sum - 1.0).abs() <= 2.0 * f64::from(f32::EPSILON), "{a} {b}: {sum}");
+        assert!(
+            (sum - 1.0).abs() <= 2.0 * f64::from(f32::EPSILON),
+            "{a} {b}: {sum}"
+        );
     }
 }

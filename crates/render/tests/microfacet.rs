@@ -44,8 +44,13 @@ fn distribution_and_masking_agree_with_f64() {
     let mut rng = Rng::new(60);
     let (mut d_worst, mut lambda_worst, mut g_worst) =
         (Worst::default(), Worst::default(), Worst::default());
-    let relative =
-        |a: f32, b: f64| if b == 0.0 { f64::from(a.abs()) } else { (f64::from(a) / b - 1.0).abs() };
+    let relative = |a: f32, b: f64| {
+        if b == 0.0 {
+            f64::from(a.abs())
+        } else {
+            (f64::from(a) / b - 1.0).abs()
+        }
+    };
     for roughness in roughnesses() {
         let ggx = Ggx::from_roughness(scalar(), roughness);
         let exact = Ggx::from_roughness(precise(), f64::from(roughness));
@@ -145,15 +150,27 @@ fn snell(cos: f64, eta: f64) -> Option<f64> {
 
 /// Fresnel's equations as textbooks have them.
 fn textbook(cos: f64, eta: f64) -> f64 {
-    let Some(beyond) = snell(cos, eta) else { return 1.0 };
+    let Some(beyond) = snell(cos, eta) else {
+        return 1.0;
+    };
     let perpendicular = (cos - eta * beyond) / (cos + eta * beyond);
     let parallel = (eta * cos - beyond) / (eta * cos + beyond);
     0.5 * (perpendicular * perpendicular + parallel * parallel)
 }
 
 fn indices() -> Vec<f32> {
-    let mut indices =
-        vec![1.0_f32.next_up(), 1.0_f32.next_down(), 1.0001, 1.001, 1.01, 1.1, 1.33, 1.5, 2.4, 3.0];
+    let mut indices = vec![
+        1.0_f32.next_up(),
+        1.0_f32.next_down(),
+        1.0001,
+        1.001,
+        1.01,
+        1.1,
+        1.33,
+        1.5,
+        2.4,
+        3.0,
+    ];
     for k in 0..10 {
         indices.push(1.0 / indices[k]);
     }
@@ -171,7 +188,10 @@ fn fresnel_in_f64_is_the_textbooks() {
             if near {
                 continue;
             }
-            assert!((reflectance - textbook(cos, eta)).abs() < 1e-10, "{cos} {eta}");
+            assert!(
+                (reflectance - textbook(cos, eta)).abs() < 1e-10,
+                "{cos} {eta}"
+            );
             let beyond = snell(cos, eta).unwrap_or(0.0);
             assert!((g - eta * beyond).abs() < 1e-10, "{cos} {eta}");
         }
@@ -183,8 +203,9 @@ fn fresnel_keeps_its_digits() {
     let mut rng = Rng::new(64);
     let (mut relative, mut critical) = (Worst::default(), Worst::default());
     for eta in indices() {
-        let mut cosines: Vec<f32> =
-            (0..20_000).map(|_| 10.0_f64.powf(rng.range(-6.0, 0.0)) as f32).collect();
+        let mut cosines: Vec<f32> = (0..20_000)
+            .map(|_| 10.0_f64.powf(rng.range(-6.0, 0.0)) as f32)
+            .collect();
         let edge = ((1.0 - f64::from(eta) * f64::from(eta)).max(0.0)).sqrt() as f32;
         cosines.extend((-64..=64).map(|k| f32::from_bits(edge.to_bits().saturating_add_signed(k))));
         cosines.extend([1.0, 1.0_f32.next_down(), 1e-30]);
@@ -200,12 +221,19 @@ fn fresnel_keeps_its_digits() {
                 // Close to the critical angle g has lost the digits that η² − 1 and c² had in common.
                 let g2 = (f64::from(eta) - 1.0) * (f64::from(eta) + 1.0)
                     + f64::from(cos) * f64::from(cos);
-                let loss = if g2 > 0.0 { 1.0 + f64::from(cos) * f64::from(cos) / g2 } else { 1.0 };
+                let loss = if g2 > 0.0 {
+                    1.0 + f64::from(cos) * f64::from(cos) / g2
+                } else {
+                    1.0
+                };
                 relative.add((f64::from(got) / exact - 1.0).abs() / loss, place);
             }
         }
     }
-    critical.assert_below(2e-3, "Fresnel within 64 ulp of the critical angle, absolute × η²");
+    critical.assert_below(
+        2e-3,
+        "Fresnel within 64 ulp of the critical angle, absolute × η²",
+    );
     relative.assert_below(2e-6, "Fresnel, relative ÷ (1 + c²/g²)");
 }
 

@@ -36,8 +36,14 @@ fn numbers_never_reach_one() {
     let mut rng = Rng::new(30);
     for _ in 0..200_000 {
         let (pixel, index) = ([rng.bits(), rng.bits()], rng.bits());
-        for numbers in [pair(&Sobol, pixel, index, 1, 3), pair(&Independent, pixel, index, 1, 3)] {
-            assert!(numbers.iter().all(|u| (0.0..=below).contains(u)), "{numbers:?}");
+        for numbers in [
+            pair(&Sobol, pixel, index, 1, 3),
+            pair(&Independent, pixel, index, 1, 3),
+        ] {
+            assert!(
+                numbers.iter().all(|u| (0.0..=below).contains(u)),
+                "{numbers:?}"
+            );
         }
     }
 }
@@ -46,8 +52,11 @@ fn numbers_never_reach_one() {
 fn hash_is_a_bijection() {
     let d = scalar();
     // Newton's iteration for the inverse of an odd number modulo 2³².
-    let inverse =
-        |a: u32| (0..5).fold(a, |x, _| x.wrapping_mul(2_u32.wrapping_sub(a.wrapping_mul(x))));
+    let inverse = |a: u32| {
+        (0..5).fold(a, |x, _| {
+            x.wrapping_mul(2_u32.wrapping_sub(a.wrapping_mul(x)))
+        })
+    };
     let undo = |x: u32| {
         let x = (x ^ (x >> 16)).wrapping_mul(inverse(0x846c_a68b));
         let x = (x ^ (x >> 15) ^ (x >> 30)).wrapping_mul(inverse(0x7feb_352d));
@@ -79,8 +88,9 @@ fn sobol_pairs_fill_elementary_intervals() {
     for seed in [0, 1, 0xdead_beef] {
         for dimension in [0, 1, 2, 3, 7, 64, 1_000_003] {
             for pixel in [[0, 0], [17, 4000]] {
-                let points: Vec<_> =
-                    (0..1 << 10).map(|index| pair(&Sobol, pixel, index, seed, dimension)).collect();
+                let points: Vec<_> = (0..1 << 10)
+                    .map(|index| pair(&Sobol, pixel, index, seed, dimension))
+                    .collect();
                 for k in 0..=10 {
                     assert_eq!(
                         crowded(&points[..1 << k]),
@@ -99,15 +109,24 @@ fn sobol_pairs_fill_elementary_intervals() {
 
 #[test]
 fn sobol_holds_beyond_2_to_the_24() {
-    for first in [(1_u32 << 24) - 256, 1 << 24, (1 << 31) - 256, u32::MAX - 255] {
-        let points: Vec<_> = (0..256).map(|k| pair(&Sobol, [3, 5], first + k, 9, 6)).collect();
+    for first in [
+        (1_u32 << 24) - 256,
+        1 << 24,
+        (1 << 31) - 256,
+        u32::MAX - 255,
+    ] {
+        let points: Vec<_> = (0..256)
+            .map(|k| pair(&Sobol, [3, 5], first + k, 9, 6))
+            .collect();
         assert_eq!(crowded(&points), 0, "from {first}");
     }
 }
 
 #[test]
 fn independent_numbers_do_not_fill_elementary_intervals() {
-    let points: Vec<_> = (0..256).map(|index| pair(&Independent, [0, 0], index, 1, 2)).collect();
+    let points: Vec<_> = (0..256)
+        .map(|index| pair(&Independent, [0, 0], index, 1, 2))
+        .collect();
     assert!(crowded(&points) > 500);
 }
 
@@ -151,11 +170,17 @@ fn assert_dimensions_independent(sampler: &impl Sampler<Scalar<'static>>) {
         let numbers = || {
             (0..16_384).map(|k| {
                 let pixel = [k % 128, k / 128];
-                [pair(sampler, pixel, 5, 1, a)[i], pair(sampler, pixel, 5, 1, b)[j]]
+                [
+                    pair(sampler, pixel, 5, 1, a)[i],
+                    pair(sampler, pixel, 5, 1, b)[j],
+                ]
             })
         };
         family.add(joint(numbers()), format!("χ² {a}.{i} {b}.{j}"));
-        family.add_z(correlation(numbers()), format!("correlation {a}.{i} {b}.{j}"));
+        family.add_z(
+            correlation(numbers()),
+            format!("correlation {a}.{i} {b}.{j}"),
+        );
     }
     family.assert_plausible();
 }
@@ -173,7 +198,11 @@ struct Deviates(Mean);
 
 impl Deviates {
     fn judge(&self, family: &mut Family, name: &str) {
-        println!("{name}: mean {:.3}, variance {:.3}", self.0.value(), self.0.variance());
+        println!(
+            "{name}: mean {:.3}, variance {:.3}",
+            self.0.value(),
+            self.0.variance()
+        );
         assert!(self.0.variance() < 3.0, "{name}");
         family.add_z(self.0.z(0.0, 0.0), name);
     }
@@ -186,7 +215,10 @@ fn samples_of_one_pixel_are_uncorrelated_across_dimensions() {
         let mut deviates = Deviates::default();
         for pixel in 0..400 {
             let numbers = (0..1024).map(|k| {
-                [pair(&Sobol, [pixel, 0], k, 3, a)[0], pair(&Sobol, [pixel, 0], k, 3, b)[0]]
+                [
+                    pair(&Sobol, [pixel, 0], k, 3, a)[0],
+                    pair(&Sobol, [pixel, 0], k, 3, b)[0],
+                ]
             });
             deviates.0.add(correlation(numbers));
         }
@@ -205,17 +237,23 @@ fn neighbouring_pixels_are_uncorrelated_over_samples() {
         let at = [pixel % 61, pixel / 61];
         for (step, deviates) in STEPS.iter().zip(&mut deviates) {
             let next = [at[0] + step[0], at[1] + step[1]];
-            let numbers =
-                |sampler: AnySampler| {
-                    correlation((0..512).map(|k| {
-                        [pair(&sampler, at, k, 7, 4)[0], pair(&sampler, next, k, 7, 4)[0]]
-                    }))
-                };
+            let numbers = |sampler: AnySampler| {
+                correlation((0..512).map(|k| {
+                    [
+                        pair(&sampler, at, k, 7, 4)[0],
+                        pair(&sampler, next, k, 7, 4)[0],
+                    ]
+                }))
+            };
             family.add_z(numbers(AnySampler::Independent), format!("{at:?} {step:?}"));
             deviates.0.add(numbers(AnySampler::Sobol));
         }
-        let lag = (0..512)
-            .map(|k| [pair(&Independent, at, k, 7, 4)[0], pair(&Independent, at, k + 1, 7, 4)[0]]);
+        let lag = (0..512).map(|k| {
+            [
+                pair(&Independent, at, k, 7, 4)[0],
+                pair(&Independent, at, k + 1, 7, 4)[0],
+            ]
+        });
         family.add_z(correlation(lag), format!("{at:?} lag 1"));
         let seeds = (0..512).map(|k| [pair(&Sobol, at, k, 7, 4)[1], pair(&Sobol, at, k, 8, 4)[1]]);
         deviates[3].0.add(correlation(seeds));
@@ -236,10 +274,16 @@ fn neighbouring_pixels_are_uncorrelated_over_the_image() {
                     (0..16_384).map(|k| {
                         let at = [k % 128, k / 128];
                         let next = [at[0] + step[0], at[1] + step[1]];
-                        [pair(&sampler, at, index, 7, 4)[0], pair(&sampler, next, index, 7, 4)[0]]
+                        [
+                            pair(&sampler, at, index, 7, 4)[0],
+                            pair(&sampler, next, index, 7, 4)[0],
+                        ]
                     })
                 };
-                family.add_z(correlation(numbers()), format!("{sampler:?} {index} {step:?}"));
+                family.add_z(
+                    correlation(numbers()),
+                    format!("{sampler:?} {index} {step:?}"),
+                );
                 family.add(joint(numbers()), format!("χ² {sampler:?} {index} {step:?}"));
             }
         }

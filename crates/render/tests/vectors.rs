@@ -27,7 +27,10 @@ fn normalize_any_gives_unit_vectors() {
         let n = vec3(v[0], v[1], v[2]).normalize_any(d);
         worst.add((length(n) - 1.0).abs(), || format!("{v:?}"));
         let exact = crate::support::unit(v.map(f64::from));
-        let error = array(n).into_iter().zip(exact).map(|(a, b)| (f64::from(a) - b).abs());
+        let error = array(n)
+            .into_iter()
+            .zip(exact)
+            .map(|(a, b)| (f64::from(a) - b).abs());
         direction.add(error.fold(0.0, f64::max), || format!("{v:?}"));
     }
     let ulp = f64::from(f32::EPSILON);
@@ -74,11 +77,16 @@ fn dot_and_lerp() {
         let got = vec3(a[0], a[1], a[2]).dot(d, vec3(b[0], b[1], b[2]));
         let (a, b) = (a.map(f64::from), b.map(f64::from));
         let size = dot(a.map(f64::abs), b.map(f64::abs));
-        worst.add((f64::from(got) - dot(a, b)).abs() / size, || format!("{a:?}·{b:?}"));
+        worst.add((f64::from(got) - dot(a, b)).abs() / size, || {
+            format!("{a:?}·{b:?}")
+        });
     }
     worst.assert_below(3.0 * f64::from(f32::EPSILON) / 2.0, "dot ÷ Σ|aᵢbᵢ|");
     let (a, b) = (vec3(1.0, 2.0, 3.0), vec3(5.0, 6.0, 7.0));
-    assert_eq!((a.lerp(b, 0.0), a.lerp(b, 1.0), a.lerp(b, 0.5)), (a, b, vec3(3.0, 4.0, 5.0)));
+    assert_eq!(
+        (a.lerp(b, 0.0), a.lerp(b, 1.0), a.lerp(b, 0.5)),
+        (a, b, vec3(3.0, 4.0, 5.0))
+    );
 }
 
 /// Unit normals in general position, at the poles and next to them, and along axes.
@@ -113,9 +121,22 @@ fn frames_are_orthonormal_and_right_handed() {
         let frame = Frame::around(d, vec3(n[0], n[1], n[2]));
         let [t, b, n] =
             [frame.tangent, frame.bitangent, frame.normal].map(|v| array(v).map(f64::from));
-        let handed = cross(t, b).iter().zip(n).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let errors = [dot(t, t) - 1.0, dot(b, b) - 1.0, dot(t, b), dot(t, n), dot(b, n), handed];
-        worst.add(errors.into_iter().map(f64::abs).fold(0.0, f64::max), || format!("{n:?}"));
+        let handed = cross(t, b)
+            .iter()
+            .zip(n)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        let errors = [
+            dot(t, t) - 1.0,
+            dot(b, b) - 1.0,
+            dot(t, b),
+            dot(t, n),
+            dot(b, n),
+            handed,
+        ];
+        worst.add(errors.into_iter().map(f64::abs).fold(0.0, f64::max), || {
+            format!("{n:?}")
+        });
     }
     worst.assert_below(6e-7, "frames: length², angles, handedness");
 }
@@ -130,7 +151,10 @@ fn frames_round_trip() {
         let v = rng.direction().map(|c| c as f32);
         let frame = Frame::around(d, vec3(n[0], n[1], n[2]));
         let back = frame.to_world(frame.to_local(d, vec3(v[0], v[1], v[2])));
-        let error = array(back).into_iter().zip(v).map(|(a, b)| f64::from((a - b).abs()));
+        let error = array(back)
+            .into_iter()
+            .zip(v)
+            .map(|(a, b)| f64::from((a - b).abs()));
         worst.add(error.fold(0.0, f64::max), || format!("{v:?} around {n:?}"));
     }
     worst.assert_below(6e-7, "frames: there and back");

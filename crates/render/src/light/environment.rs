@@ -75,6 +75,17 @@ fn radiance<D: Domain>(d: D, [u, v]: [D::F; 2]) -> Color<D::F> {
         .scale(d.uniform_real(Buffer::Environment, 3))
 }
 
+/// A texel's row and column. Above 2²³ texels the rounded quotient may be a row off, and is put right.
+#[inline(always)]
+fn row_and_column<D: Domain>(d: D, texel: D::U, width: D::U) -> (D::F, D::F) {
+    let guess = d.to_uint(d.floor(d.to_real(texel) / d.to_real(width)));
+    let one = d.uint(1);
+    let guess = d.select_u(d.lt_u(texel, guess * width), guess - one, guess);
+    let beyond = !d.lt_u(texel - guess * width, width);
+    let row = d.select_u(beyond, guess + one, guess);
+    (d.to_real(row), d.to_real(texel - row * width))
+}
+
 /// Density per steradian, from the density over the image at texel `slot`.
 #[inline(always)]
 fn solid_angle_pdf<D: Domain>(d: D, slot: D::U, sin_theta: D::F) -> D::F {
@@ -95,10 +106,7 @@ impl<D: Domain> LightKind<D> for Environment {
         );
         let slot = d.to_uint(row) * width + d.to_uint(column);
         let texel = resolve_alias(d, Buffer::Environment, HEADER, slot, u[2]);
-        // texel = row·width + column; the quotient is exact enough below 2²⁴ texels and then put right.
-        let row = d.to_real(texel) / columns;
-        let row = d.min(d.floor(d.fma(d.lit(0.5), one / columns, row)), rows - one);
-        let column = d.to_real(texel - d.to_uint(row) * width);
+        let (row, column) = row_and_column(d, texel, width);
         let place = [
             (column + (x - d.floor(x))) / columns,
             (row + (y - d.floor(y))) / rows,
@@ -125,5 +133,35 @@ impl<D: Domain> LightKind<D> for Environment {
             radiance: radiance(d, place),
             pdf: solid_angle_pdf(d, row * width + column, sin_theta) * pick,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::{Buffers, Scalar, Uint};
+
+    #[test]
+    fn rows_and_columns_are_exact_for_large_images() {
+        let d = Scalar::new(&Buffers::EMPTY);
+        for (width, height) in [
+            (1_u32, 1_u32),
+            (3, 5),
+            (8190, 4095),
+            (10_007, 5_003),
+            (16_384, 8_192),
+        ] {
+            let texels = u64::from(width) * u64::from(height);
+            for step in 0..20_000_u64 {
+                // Row ends and starts are where rounding decides.
+                let row = (step * 7919 % u64::from(height)) as u32;
+                for column in [0, width / 2, width - 1] {
+                    let texel = row * width + column;
+                    assert!(u64::from(texel) < texels);
+                    let found = row_and_column(d, Uint(texel), Uint(width));
+                    assert_eq!(found, (row as f32, column as f32), "{width}×{height}");
+                }
+            }
+        }
     }
 }

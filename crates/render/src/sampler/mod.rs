@@ -21,17 +21,19 @@ pub struct SampleKey<U> {
 }
 
 impl<U: crate::domain::Unsigned> SampleKey<U> {
-    /// Sample `index` of the pixel at (x, y) of a render with this seed.
+    /// Sample `index` of the pixel at (x, y), both below 2¹⁶, of a render with this seed. No two pixels of a render
+    /// have the same hash: it is a bijection of the pixel's place.
     #[inline(always)]
     pub fn new<D: Domain<U = U>>(d: D, x: U, y: U, index: U, seed: U) -> Self {
-        let pixel = hash(d, x ^ hash(d, y ^ hash(d, seed + d.uint(0x5bd1_e995))));
+        let place = (y << 16) | x;
+        let pixel = hash(d, hash(d, place) ^ hash(d, seed + d.uint(0x5bd1_e995)));
         Self { pixel, index }
     }
 }
 
 /// A source of random numbers.
 pub trait Sampler<D: Domain> {
-    /// Two numbers in [0, 1) − [0, 1 − 2⁻²⁴] to be exact. Dimensions are independent of one another.
+    /// Two numbers in [0, 1): the largest is 1 − 2⁻²⁴. Dimensions are independent of one another.
     fn pair(&self, d: D, key: SampleKey<D::U>, dimension: D::U) -> [D::F; 2];
 }
 

@@ -45,7 +45,14 @@ impl Family {
     /// Adds the two-sided p-value of a standard normal deviate.
     pub(crate) fn add_z(&mut self, z: f64, name: impl Into<String>) {
         let normal = Normal::standard();
-        self.add(if z.is_finite() { 2.0 * normal.sf(z.abs()) } else { 0.0 }, name);
+        self.add(
+            if z.is_finite() {
+                2.0 * normal.sf(z.abs())
+            } else {
+                0.0
+            },
+            name,
+        );
     }
 
     fn level(&self) -> f64 {
@@ -57,12 +64,19 @@ impl Family {
     pub(crate) fn assert_plausible(&self) {
         assert!(!self.0.is_empty());
         let level = self.level();
-        let mut failed: Vec<_> = self.0.iter().filter(|(p, _)| p.is_nan() || *p < level).collect();
+        let mut failed: Vec<_> = self
+            .0
+            .iter()
+            .filter(|(p, _)| p.is_nan() || *p < level)
+            .collect();
         failed.sort_by(|a, b| a.0.total_cmp(&b.0));
         let count = failed.len();
         failed.truncate(12);
         let all = self.0.len();
-        assert!(count == 0, "{count} of {all} below {level:.2e}, first {failed:#?}");
+        assert!(
+            count == 0,
+            "{count} of {all} below {level:.2e}, first {failed:#?}"
+        );
     }
 
     /// Whether some member is below the corrected level.
@@ -106,13 +120,19 @@ impl Mean {
     pub(crate) fn z(&self, expected: f64, tolerance: f64) -> f64 {
         let error = self.error().hypot(expected * tolerance);
         let difference = self.mean - expected;
-        if difference == 0.0 { 0.0 } else { difference / error }
+        if difference == 0.0 {
+            0.0
+        } else {
+            difference / error
+        }
     }
 }
 
 #[test]
 fn chi_squared_accepts_what_is_right_and_rejects_what_is_not() {
-    let expected: Vec<f64> = (0..64).map(|k| 200.0 + 50.0 * (f64::from(k) * 0.3).sin()).collect();
+    let expected: Vec<f64> = (0..64)
+        .map(|k| 200.0 + 50.0 * (f64::from(k) * 0.3).sin())
+        .collect();
     let total: f64 = expected.iter().sum();
     let draw = |weights: &[f64], rng: &mut Rng| {
         let sum: f64 = weights.iter().sum();
@@ -130,12 +150,18 @@ fn chi_squared_accepts_what_is_right_and_rejects_what_is_not() {
     let mut family = Family::default();
     let mut rng = Rng::new(1);
     for run in 0..50 {
-        family.add(chi_squared(&draw(&expected, &mut rng), &expected), format!("run {run}"));
+        family.add(
+            chi_squared(&draw(&expected, &mut rng), &expected),
+            format!("run {run}"),
+        );
     }
     family.assert_plausible();
     // A fifth more in a quarter of the cells is found.
-    let wrong: Vec<f64> =
-        expected.iter().enumerate().map(|(k, e)| if k < 16 { e * 1.2 } else { *e }).collect();
+    let wrong: Vec<f64> = expected
+        .iter()
+        .enumerate()
+        .map(|(k, e)| if k < 16 { e * 1.2 } else { *e })
+        .collect();
     assert!(chi_squared(&draw(&wrong, &mut rng), &expected) < 1e-4);
     // Counts where nothing may be are a failure.
     assert_eq!(chi_squared(&[10.0, 1.0, 10.0], &[10.0, 0.0, 10.0]), 0.0);
