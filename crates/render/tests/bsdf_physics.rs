@@ -118,7 +118,10 @@ fn furnace_of_coated_surfaces() {
     for roughness in ROUGHNESSES {
         for reflectance in [0.0, 0.04, 0.5, 1.0] {
             for (cos, albedo) in albedos(&glossy(roughness, reflectance)) {
-                println!("glossy {roughness}, F₀ {reflectance}, cos {cos}: {:.4}", albedo.value());
+                println!(
+                    "glossy {roughness}, F₀ {reflectance}, cos {cos}: {:.4}",
+                    albedo.value()
+                );
                 let bound = match cos {
                     1.0 | 0.8 => 1.001,
                     0.5 => 1.03,

@@ -68,7 +68,12 @@ mod tests {
             f64::from(state) / 4_294_967_296.0
         };
         let mut weights: Vec<f64> = (0..10_000)
-            .map(|_| ((-2.0 * next().max(1e-12).ln()).sqrt() * (next() * 6.283).cos() * 4.0).exp())
+            .map(|_| {
+                ((-2.0 * next().max(1e-12).ln()).sqrt()
+                    * (next() * std::f64::consts::TAU).cos()
+                    * 4.0)
+                    .exp()
+            })
             .collect();
         weights[17] = 0.0;
         weights[4711] = 1e6;
