@@ -22,12 +22,15 @@ fn target_directory() -> PathBuf {
 }
 
 /// The name of the `LaneCount` variant.
-pub(crate) fn lanes_name(lanes: LaneCount) -> String {
+pub fn lanes_name(lanes: LaneCount) -> String {
     format!("{lanes:?}")
 }
 
 /// Compiles and loads the renderer of a plan.
-pub(crate) fn compile(plan: &Plan, lanes: LaneCount) -> Result<LoadedRenderer> {
+///
+/// # Errors
+/// If there is no cargo, or it fails.
+pub fn compile(plan: &Plan, lanes: LaneCount) -> Result<LoadedRenderer> {
     let mut source = rust::module(plan, &lanes_name(lanes));
     source.push_str("\nresidual_device_cpu::export_renderer!();\n");
     let mut hasher = DefaultHasher::new();
