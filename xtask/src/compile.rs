@@ -18,7 +18,9 @@ fn workspace() -> &'static Path {
 
 /// Where the workspace's builds are; compiled renderers share their dependencies with them.
 fn target_directory() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from)
+    let given = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    // Cargo is run from the workspace; a relative path is relative to here.
+    given.map_or_else(|| workspace().join("target"), |path| std::path::absolute(&path).unwrap_or(path))
 }
 
 /// The name of the `LaneCount` variant.

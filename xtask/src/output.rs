@@ -1,6 +1,5 @@
 //! Image files. A file is written beside its place, synced, and renamed: there is never half an image.
 
-
 use std::io::{Cursor, Write as _};
 use std::path::Path;
 
@@ -26,6 +25,12 @@ pub(crate) fn check(path: &Path) -> Result<()> {
     if !directory.is_dir() {
         bail!("{}: the directory {} does not exist", path.display(), directory.display());
     }
+    if path.is_dir() {
+        bail!("{}: is a directory; give the name of a file", path.display());
+    }
+    // Made and removed again: nothing else says for sure whether the directory can be written to.
+    tempfile::NamedTempFile::new_in(directory)
+        .with_context(|| format!("{}: the directory {} cannot be written to", path.display(), directory.display()))?;
     Ok(())
 }
 
