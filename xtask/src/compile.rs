@@ -20,16 +20,24 @@ fn workspace() -> &'static Path {
 
 /// Where the workspace's builds are; compiled renderers share their dependencies with them.
 fn target_directory() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from)
+    let given = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    // Cargo is run from the workspace; a relative path is relative to here.
+    given.map_or_else(
+        || workspace().join("target"),
+        |path| std::path::absolute(&path).unwrap_or(path),
+    )
 }
 
 /// The name of the `LaneCount` variant.
-pub(crate) fn lanes_name(lanes: LaneCount) -> String {
+pub fn lanes_name(lanes: LaneCount) -> String {
     format!("{lanes:?}")
 }
 
 /// Compiles and loads the renderer of a plan.
-pub(crate) fn compile(plan: &Plan, lanes: LaneCount) -> Result<LoadedRenderer> {
+///
+/// # Errors
+/// If there is no cargo, or it fails.
+pub fn compile(plan: &Plan, lanes: LaneCount) -> Result<LoadedRenderer> {
     let mut source = rust::module(plan, &lanes_name(lanes));
     source.push_str("\nresidual_device_cpu::export_renderer!();\n");
     let mut hasher = DefaultHasher::new();

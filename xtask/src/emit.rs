@@ -21,7 +21,7 @@ pub(crate) fn run(args: &EmitArgs) -> Result<()> {
         Some(directory) => {
             fs::create_dir_all(directory)
                 .with_context(|| format!("creating {}", directory.display()))?;
-            let path = directory.join(&plan.name).with_extension(extension);
+            let path = directory.join(format!("{}.{extension}", plan.name));
             crate::output::write_atomically(&path, text.as_bytes())?;
             eprintln!("{}", path.display());
         }

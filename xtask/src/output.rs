@@ -29,6 +29,20 @@ pub(crate) fn check(path: &Path) -> Result<()> {
             directory.display()
         );
     }
+    if path.is_dir() {
+        bail!(
+            "{}: is a directory; give the name of a file",
+            path.display()
+        );
+    }
+    // Made and removed again: nothing else says for sure whether the directory can be written to.
+    tempfile::NamedTempFile::new_in(directory).with_context(|| {
+        format!(
+            "{}: the directory {} cannot be written to",
+            path.display(),
+            directory.display()
+        )
+    })?;
     Ok(())
 }
 

@@ -181,8 +181,10 @@ impl Compilation {
 /// The files to be written, checked.
 fn outputs(args: &RenderArgs) -> Result<Vec<PathBuf>> {
     let outputs = if args.output.is_empty() {
-        let stem = args.scene.scene.file_stem().unwrap_or_default();
-        vec![PathBuf::from(stem).with_extension("png")]
+        // Not `with_extension`: a name may have dots of its own.
+        let mut name = args.scene.scene.file_stem().unwrap_or_default().to_owned();
+        name.push(".png");
+        vec![PathBuf::from(name)]
     } else {
         args.output.clone()
     };

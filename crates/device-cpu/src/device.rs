@@ -55,6 +55,7 @@ pub struct RenderReport {
 /// Threads that render.
 pub struct CpuDevice {
     pool: rayon::ThreadPool,
+    tile_size: u32,
 }
 
 impl CpuDevice {
@@ -63,11 +64,22 @@ impl CpuDevice {
     /// # Errors
     /// If the system gives no threads.
     pub fn new(threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()?;
         Ok(Self {
-            pool: rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()?,
+            pool,
+            tile_size: TILE_SIZE,
         })
+    }
+
+    /// The same device with tiles of this many pixels along their sides. Images do not depend on it.
+    #[must_use]
+    pub fn with_tile_size(self, tile_size: u32) -> Self {
+        Self {
+            tile_size: tile_size.max(1),
+            ..self
+        }
     }
 
     /// Renders until the options say stop. Between passes `renderer` is asked anew which renderer to use, so that a
@@ -80,7 +92,7 @@ impl CpuDevice {
         mut progress: impl FnMut(Progress),
     ) -> (Film, RenderReport) {
         let [width, height] = options.size;
-        let mut film = Film::new(width, height, TILE_SIZE);
+        let mut film = Film::new(width, height, self.tile_size);
         let start = Instant::now();
         let counters = Mutex::new(Counters::default());
         let mut done = 0;

@@ -1,0 +1,505 @@
+//! Small scenes, built in code, that between them call for every effect.
+
+use glam::{Affine3A, Mat3, Quat, Vec2, Vec3, Vec4};
+use residual_scenegen::desc::{
+    AlphaMode, CameraDesc, ColorInput, EnvironmentDesc, Filter, ImageDesc, InstanceDesc, LightDesc,
+    LightKind, MaterialDesc, MeshDesc, MetallicRoughness, NormalMap, Phong, Projection,
+    ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureDesc, TextureUse, Wrap,
+};
+
+/// A colour without a texture.
+pub fn color(factor: [f32; 3]) -> ColorInput {
+    ColorInput {
+        factor,
+        texture: None,
+    }
+}
+
+/// A number without a texture.
+pub fn scalar(factor: f32) -> ScalarInput {
+    ScalarInput {
+        factor,
+        texture: None,
+    }
+}
+
+/// glTF's surface with its defaults, but for base colour, metallic and roughness.
+pub fn metallic_roughness(base: [f32; 3], metallic: f32, roughness: f32) -> MetallicRoughness {
+    MetallicRoughness {
+        base_color: color(base),
+        metallic: scalar(metallic),
+        roughness: scalar(roughness),
+        ior: 1.5,
+        specular: scalar(1.0),
+        specular_color: color([1.0; 3]),
+        transmission: scalar(0.0),
+        solid: false,
+    }
+}
+
+/// Smooth clear glass.
+fn glass(solid: bool) -> MetallicRoughness {
+    MetallicRoughness {
+        transmission: scalar(1.0),
+        solid,
+        ..metallic_roughness([0.9, 0.95, 1.0], 0.0, 0.0)
+    }
+}
+
+/// A Lambertian surface.
+pub fn matte(albedo: [f32; 3]) -> SurfaceDesc {
+    SurfaceDesc::Phong(Phong {
+        diffuse: color(albedo),
+        specular: color([0.0; 3]),
+        exponent: scalar(0.0),
+    })
+}
+
+/// A material that neither emits nor has alpha or a normal map; seen from both sides.
+pub fn material(name: &str, surface: SurfaceDesc) -> MaterialDesc {
+    MaterialDesc {
+        name: name.to_owned(),
+        surface,
+        emission: color([0.0; 3]),
+        alpha_mode: AlphaMode::Opaque,
+        alpha: scalar(1.0),
+        normal_map: None,
+        double_sided: true,
+    }
+}
+
+/// A parallelogram with texture coordinates, seen from the side from which `u` turns left to `v`.
+pub fn sheet(corner: [f32; 3], u: [f32; 3], v: [f32; 3]) -> MeshDesc {
+    let (corner, u, v) = (Vec3::from(corner), Vec3::from(u), Vec3::from(v));
+    let uvs = vec![
+        Vec2::new(0.0, 1.0),
+        Vec2::new(1.0, 1.0),
+        Vec2::new(1.0, 0.0),
+        Vec2::new(0.0, 0.0),
+    ];
+    MeshDesc {
+        name: "sheet".to_owned(),
+        material: 0,
+        positions: vec![corner, corner + u, corner + u + v, corner + v],
+        normals: vec![u.cross(v).normalize(); 4],
+        tangents: None,
+        uvs: [Some(uvs), None],
+        colors: None,
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    }
+}
+
+/// A sphere with smooth normals.
+pub fn sphere(centre: [f32; 3], radius: f32) -> MeshDesc {
+    const ROWS: u32 = 12;
+    const COLUMNS: u32 = 24;
+    let vertex = |row: u32, column: u32| {
+        let (polar, azimuth) = (
+            std::f32::consts::PI * row as f32 / ROWS as f32,
+            std::f32::consts::TAU * column as f32 / COLUMNS as f32,
+        );
+        Vec3::new(
+            polar.sin() * azimuth.cos(),
+            polar.cos(),
+            polar.sin() * azimuth.sin(),
+        )
+    };
+    let places = || (0..=ROWS).flat_map(|row| (0..=COLUMNS).map(move |column| (row, column)));
+    let normals: Vec<_> = places()
+        .map(|(row, column)| vertex(row, column % COLUMNS))
+        .collect();
+    let uv = |(row, column)| Vec2::new(column as f32 / COLUMNS as f32, row as f32 / ROWS as f32);
+    let cell = |row: u32, column: u32| {
+        let [a, b] = [row, row + 1].map(|row| row * (COLUMNS + 1) + column);
+        [[a, b + 1, b], [a, a + 1, b + 1]]
+    };
+    MeshDesc {
+        name: "sphere".to_owned(),
+        material: 0,
+        positions: normals
+            .iter()
+            .map(|n| Vec3::from(centre) + *n * radius)
+            .collect(),
+        normals,
+        tangents: None,
+        uvs: [Some(places().map(uv).collect()), None],
+        colors: None,
+        triangles: (0..ROWS)
+            .flat_map(|row| (0..COLUMNS).flat_map(move |column| cell(row, column)))
+            .collect(),
+    }
+}
+
+/// A scene in the making.
+#[derive(Default)]
+pub struct Builder {
+    scene: SceneDesc,
+}
+
+impl Builder {
+    /// An empty scene of this name.
+    pub fn new(name: &str) -> Self {
+        Self {
+            scene: SceneDesc {
+                name: name.to_owned(),
+                ..SceneDesc::default()
+            },
+        }
+    }
+
+    /// Adds meshes of one material.
+    pub fn add(&mut self, material: MaterialDesc, meshes: impl IntoIterator<Item = MeshDesc>) {
+        for mesh in meshes {
+            let number = self.scene.meshes.len();
+            self.scene.instances.push(InstanceDesc {
+                name: format!("node {number}"),
+                mesh: number,
+                transform: Affine3A::IDENTITY,
+            });
+            self.scene.meshes.push(MeshDesc {
+                material: self.scene.materials.len(),
+                ..mesh
+            });
+        }
+        self.scene.materials.push(material);
+    }
+
+    /// Adds a light.
+    pub fn light(&mut self, kind: LightKind, intensity: [f32; 3]) {
+        self.scene.lights.push(LightDesc {
+            name: "light".to_owned(),
+            kind,
+            intensity,
+        });
+    }
+
+    /// Adds a camera that looks from one point at another.
+    pub fn camera(&mut self, name: &str, eye: [f32; 3], target: [f32; 3], projection: Projection) {
+        let (position, target) = (Vec3::from(eye), Vec3::from(target));
+        let back = (position - target).normalize();
+        let right = Vec3::Y.cross(back).normalize();
+        let rotation = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
+        self.scene.cameras.push(CameraDesc {
+            name: name.to_owned(),
+            position,
+            rotation,
+            projection,
+        });
+    }
+
+    /// Adds a coloured image of bytes, all texels different; its alpha takes all values.
+    fn bytes(&mut self, width: u32, height: u32) -> usize {
+        let texel = |i: u32| {
+            let x = i.wrapping_mul(2_654_435_761) >> 7;
+            [
+                x as u8,
+                (x >> 8) as u8,
+                (x >> 16) as u8,
+                (i * 255 / (width * height - 1)) as u8,
+            ]
+        };
+        self.image(
+            width,
+            height,
+            Texels::Rgba8((0..width * height).map(texel).collect()),
+        )
+    }
+
+    /// Adds an image of floating-point numbers, brighter at the top.
+    fn floats(&mut self, width: u32, height: u32) -> usize {
+        let texel = |i: u32| {
+            let (x, y) = (i % width, i / width);
+            let up = 1.0 - y as f32 / height as f32;
+            [up * 1.5, up + 0.1 * (x % 3) as f32, 0.4, 1.0]
+        };
+        self.image(
+            width,
+            height,
+            Texels::RgbaF32((0..width * height).map(texel).collect()),
+        )
+    }
+
+    fn image(&mut self, width: u32, height: u32, texels: Texels) -> usize {
+        let name = format!("image {}", self.scene.images.len());
+        self.scene.images.push(ImageDesc {
+            name,
+            width,
+            height,
+            texels,
+        });
+        self.scene.images.len() - 1
+    }
+
+    /// Adds a texture.
+    fn texture(&mut self, image: usize, wrap: [Wrap; 2], filter: Filter) -> TextureUse {
+        self.scene.textures.push(TextureDesc {
+            image,
+            wrap,
+            filter,
+        });
+        TextureUse {
+            texture: self.scene.textures.len() - 1,
+            uv_set: 0,
+            transform: None,
+        }
+    }
+
+    /// The scene.
+    ///
+    /// # Panics
+    /// If it breaks an invariant of descriptions.
+    pub fn finish(self) -> SceneDesc {
+        self.scene.validate().expect("a valid fixture");
+        self.scene
+    }
+}
+
+const PERSPECTIVE: Projection = Projection::Perspective { yfov: 0.75 };
+
+/// An open room: matte, metal, a mixture, coated, thin and solid glass, a normal map, vertex colours, an emitting
+/// surface and one with a texture; single-sided and double-sided surfaces.
+pub fn room() -> SceneDesc {
+    let mut b = Builder::new("room");
+    let bumps = b.bytes(8, 8);
+    let smooth = b.texture(bumps, [Wrap::Repeat; 2], Filter::Linear);
+
+    let floor = MeshDesc {
+        tangents: Some(vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 4]),
+        ..sheet([-2.0, 0.0, 2.0], [4.0, 0.0, 0.0], [0.0, 0.0, -4.0])
+    };
+    let relief = NormalMap {
+        texture: smooth.clone(),
+        scale: 0.4,
+    };
+    let tiles = SurfaceDesc::MetallicRoughness(metallic_roughness([0.7, 0.6, 0.5], 0.0, 0.4));
+    b.add(
+        MaterialDesc {
+            normal_map: Some(relief),
+            ..material("tiles", tiles)
+        },
+        [floor],
+    );
+
+    let wall = MeshDesc {
+        colors: Some(
+            (0..4)
+                .map(|i| Vec4::new(1.0, 0.3 * i as f32, 0.2, 1.0))
+                .collect(),
+        ),
+        ..sheet([-2.0, 0.0, -2.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0])
+    };
+    let surface = MetallicRoughness {
+        specular: scalar(0.0),
+        ..metallic_roughness([1.0; 3], 0.0, 1.0)
+    };
+    b.add(
+        MaterialDesc {
+            double_sided: false,
+            ..material("wall", SurfaceDesc::MetallicRoughness(surface))
+        },
+        [wall],
+    );
+    let side = sheet([-2.0, 0.0, 2.0], [0.0, 0.0, -4.0], [0.0, 3.0, 0.0]);
+    b.add(material("matte", matte([0.2, 0.6, 0.3])), [side]);
+
+    let balls = [
+        ("gold", metallic_roughness([1.0, 0.8, 0.3], 1.0, 0.25)),
+        ("half metal", metallic_roughness([0.5, 0.7, 0.9], 0.5, 0.5)),
+        ("solid glass", glass(true)),
+        (
+            "frost",
+            MetallicRoughness {
+                transmission: scalar(0.6),
+                ..metallic_roughness([0.8; 3], 0.0, 0.0)
+            },
+        ),
+    ];
+    for (i, (name, surface)) in balls.into_iter().enumerate() {
+        let centre = [-1.35 + 0.9 * i as f32, 0.45, 0.3];
+        b.add(
+            material(name, SurfaceDesc::MetallicRoughness(surface)),
+            [sphere(centre, 0.4)],
+        );
+    }
+    let pane = sheet([0.2, 0.9, 0.9], [1.0, 0.0, 0.0], [0.0, 0.8, 0.2]);
+    b.add(
+        material("thin glass", SurfaceDesc::MetallicRoughness(glass(false))),
+        [pane],
+    );
+
+    let lamp = MaterialDesc {
+        emission: color([9.0, 8.0, 6.0]),
+        double_sided: false,
+        ..material("lamp", matte([0.0; 3]))
+    };
+    b.add(
+        lamp,
+        [sheet([-0.6, 2.9, -0.6], [1.2, 0.0, 0.0], [0.0, 0.0, 1.2])],
+    );
+    let screen = ColorInput {
+        factor: [1.5; 3],
+        texture: Some(smooth),
+    };
+    let screen = MaterialDesc {
+        emission: screen,
+        ..material("screen", matte([0.1; 3]))
+    };
+    b.add(
+        screen,
+        [sheet([1.9, 0.4, 1.0], [0.0, 0.0, -1.6], [0.0, 1.2, 0.0])],
+    );
+    b.camera("front", [0.3, 1.4, 5.5], [0.0, 1.1, 0.0], PERSPECTIVE);
+    b.finish()
+}
+
+/// Sheets with every wrap, filter and texel format, transforms and a second set of coordinates, masks and blending,
+/// under an environment, seen by an orthographic camera.
+pub fn textures() -> SceneDesc {
+    let mut b = Builder::new("textures");
+    let (bytes, floats) = (b.bytes(7, 5), b.floats(6, 4));
+    let wraps = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
+    let filters = [Filter::Nearest, Filter::Linear];
+    let mut number = 0;
+    for (row, wrap) in wraps.into_iter().enumerate() {
+        for filter in filters {
+            for image in [bytes, floats] {
+                let mut texture = b.texture(image, [wrap, wraps[(row + 1) % 3]], filter);
+                texture.transform = Some([[2.6, 0.3, -0.8], [-0.2, 2.4, -0.6]]);
+                texture.uv_set = number % 2;
+                let mut surface = metallic_roughness([0.9, 1.0, 0.8], 0.0, 0.7);
+                surface.base_color.texture = Some(texture.clone());
+                surface.roughness.texture = Some((texture.clone(), 1));
+                if number % 3 == 0 {
+                    surface.metallic = ScalarInput {
+                        factor: 1.0,
+                        texture: Some((texture.clone(), 2)),
+                    };
+                }
+                let alpha_mode = match number % 4 {
+                    0 => AlphaMode::Mask(0.4),
+                    1 => AlphaMode::Blend,
+                    _ => AlphaMode::Opaque,
+                };
+                let alpha = ScalarInput {
+                    factor: 0.9,
+                    texture: Some((texture, 3)),
+                };
+                let corner = [
+                    (number % 4) as f32 - 2.0,
+                    row as f32 - 1.5,
+                    0.3 * (number % 2) as f32,
+                ];
+                let mut mesh = sheet(corner, [0.9, 0.0, 0.1], [0.1, 0.9, 0.0]);
+                mesh.uvs[1] = mesh.uvs[0]
+                    .as_ref()
+                    .map(|uvs| uvs.iter().map(|uv| Vec2::new(uv.y, uv.x) * 0.7).collect());
+                let name = format!("{wrap:?} {filter:?} {number}");
+                let surface = SurfaceDesc::MetallicRoughness(surface);
+                b.add(
+                    MaterialDesc {
+                        alpha_mode,
+                        alpha,
+                        ..material(&name, surface)
+                    },
+                    [mesh],
+                );
+                number += 1;
+            }
+        }
+    }
+    b.add(
+        material("back", matte([0.6, 0.5, 0.4])),
+        [sheet([-3.0, -2.0, -1.0], [6.0, 0.0, 0.0], [0.0, 4.0, 0.0])],
+    );
+    let sky = b.floats(16, 8);
+    b.scene.environment = Some(EnvironmentDesc {
+        image: sky,
+        strength: 0.8,
+        rotation: 0.7,
+    });
+    b.camera(
+        "flat",
+        [0.5, 0.4, 5.0],
+        [0.0, 0.0, 0.0],
+        Projection::Orthographic { ymag: 1.9 },
+    );
+    b.finish()
+}
+
+/// Phong surfaces and a dielectric, as OBJ files have them, under a point, a spot and a directional light and an
+/// emitting triangle.
+pub fn lights() -> SceneDesc {
+    let mut b = Builder::new("lights");
+    let phong = |diffuse, specular, exponent| {
+        SurfaceDesc::Phong(Phong {
+            diffuse: color(diffuse),
+            specular: color(specular),
+            exponent: scalar(exponent),
+        })
+    };
+    b.add(
+        material("ground", phong([0.5, 0.5, 0.4], [0.2; 3], 12.0)),
+        [sheet([-3.0, 0.0, 3.0], [6.0, 0.0, 0.0], [0.0, 0.0, -6.0])],
+    );
+    b.add(
+        material("shiny", phong([0.1, 0.2, 0.5], [0.6; 3], 80.0)),
+        [sphere([-1.1, 0.6, 0.0], 0.6)],
+    );
+    b.add(
+        material("mirror", phong([0.0; 3], [0.8, 0.7, 0.6], 500.0)),
+        [sphere([0.2, 0.5, -0.6], 0.5)],
+    );
+    let clear = SurfaceDesc::Dielectric {
+        ior: 1.4,
+        transmittance: [0.9, 1.0, 0.9],
+    };
+    b.add(material("clear", clear), [sphere([1.2, 0.5, 0.4], 0.5)]);
+    let mut tip = sheet([-0.4, 2.4, 0.0], [0.8, 0.0, 0.0], [0.0, 0.0, 0.8]);
+    tip.triangles.truncate(1);
+    b.add(
+        MaterialDesc {
+            emission: color([5.0, 3.0, 2.0]),
+            ..material("tip", matte([0.3; 3]))
+        },
+        [tip],
+    );
+    b.light(
+        LightKind::Point {
+            position: Vec3::new(2.0, 2.0, 2.0),
+        },
+        [4.0, 4.0, 5.0],
+    );
+    b.light(
+        LightKind::Point {
+            position: Vec3::new(-2.0, 1.0, 2.0),
+        },
+        [1.0, 0.5, 0.2],
+    );
+    let down = Vec3::new(0.2, -1.0, -0.3).normalize();
+    b.light(
+        LightKind::Spot {
+            position: Vec3::new(-1.0, 3.0, 1.0),
+            direction: down,
+            inner: 0.3,
+            outer: 0.5,
+        },
+        [12.0, 10.0, 8.0],
+    );
+    b.light(
+        LightKind::Directional {
+            direction: Vec3::new(-0.4, -0.8, -0.3).normalize(),
+        },
+        [0.6, 0.7, 0.8],
+    );
+    b.camera("front", [0.0, 1.6, 5.0], [0.0, 0.7, 0.0], PERSPECTIVE);
+    b.finish()
+}
+
+/// One matte triangle; no light, no camera.
+pub fn triangle() -> SceneDesc {
+    let mut b = Builder::new("triangle");
+    let mut mesh = sheet([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);
+    mesh.triangles.truncate(1);
+    b.add(material("matte", matte([0.5; 3])), [mesh]);
+    b.finish()
+}

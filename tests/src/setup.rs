@@ -1,0 +1,117 @@
+//! From a description to a film.
+
+use std::path::{Path, PathBuf};
+
+use residual_bvh::BuildQuality;
+use residual_device_cpu::lanes::OwnedBvh;
+use residual_device_cpu::{
+    CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer,
+};
+use residual_render::film::Film;
+use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::import::{EnvironmentOptions, ImportError, ImportOptions, import};
+use residual_scenegen::plan::Plan;
+
+/// Reads a scene file, under an environment image where one is given.
+///
+/// # Errors
+/// If the file is refused.
+pub fn read_scene(path: &Path, environment: Option<PathBuf>) -> Result<SceneDesc, ImportError> {
+    let environment = environment.map(|path| EnvironmentOptions {
+        path,
+        strength: 1.0,
+        rotation_degrees: 0.0,
+    });
+    import(
+        path,
+        &ImportOptions {
+            environment,
+            strict: false,
+        },
+    )
+}
+
+/// How a picture is taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// Width and height; the plan was made for the same.
+    pub size: [u32; 2],
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Most vertices of a path.
+    pub max_depth: u32,
+    /// Seed.
+    pub seed: u32,
+    /// Threads.
+    pub threads: usize,
+    /// Pixels along the side of a tile; `None` is the device's choice.
+    pub tile_size: Option<u32>,
+}
+
+impl Look {
+    /// On two threads, with paths of eight vertices.
+    pub fn new(size: [u32; 2], samples: u32) -> Self {
+        Self {
+            size,
+            samples,
+            max_depth: 8,
+            seed: 0,
+            threads: 2,
+            tile_size: None,
+        }
+    }
+}
+
+/// A plan with the hierarchy that goes with a lane count.
+pub struct Prepared<'a> {
+    plan: &'a Plan,
+    bvh: OwnedBvh,
+    lanes: LaneCount,
+}
+
+impl<'a> Prepared<'a> {
+    /// Builds the hierarchy; a hasty one over more triangles than it pays for in a test.
+    pub fn new(plan: &'a Plan, lanes: LaneCount) -> Self {
+        const MANY: usize = 150_000;
+        let many = plan.data.triangle_count() > MANY;
+        let quality = if many {
+            BuildQuality::Fast
+        } else {
+            BuildQuality::Best
+        };
+        let bvh = OwnedBvh::build(&plan.data, lanes, quality);
+        Self { plan, bvh, lanes }
+    }
+
+    /// Renders by interpretation.
+    pub fn interpret(&self, look: &Look) -> Film {
+        self.render(
+            &Interpreter::new(self.plan.structure.clone(), self.lanes),
+            look,
+        )
+    }
+
+    /// Renders by a renderer made for the plan and the lane count.
+    ///
+    /// # Panics
+    /// If the system gives no threads.
+    pub fn render(&self, renderer: &dyn TileRenderer, look: &Look) -> Film {
+        let mut device = CpuDevice::new(look.threads).expect("threads");
+        if let Some(tile_size) = look.tile_size {
+            device = device.with_tile_size(tile_size);
+        }
+        let options = RenderOptions {
+            size: look.size,
+            samples: Some(look.samples),
+            time: None,
+            max_depth: look.max_depth,
+            seed: look.seed,
+            threads: look.threads,
+        };
+        let view = SceneView {
+            buffers: self.plan.data.buffers(),
+            bvh: self.bvh.view(),
+        };
+        device.render(|| renderer, &view, &options, |_| {}).0
+    }
+}

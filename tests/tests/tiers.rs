@@ -1,0 +1,171 @@
+//! Interpreted and specialised renderers give the same bits, whatever the lanes, threads and binding times (DESIGN,
+//! invariant 1). Every specialised renderer is compiled by cargo, so each scene is compiled once for each lane count.
+
+use std::collections::BTreeSet;
+
+use residual_device_cpu::LaneCount;
+use residual_render::film::Film;
+use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::effects::{Effect, Effects};
+use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
+use residual_tests::pictures::{first_difference, mean};
+use residual_tests::{Look, Prepared, fixtures, read_scene, scenes};
+
+/// Neither a multiple of a tile nor of a lane count.
+const SIZE: [u32; 2] = [75, 52];
+
+fn planned(scene: &SceneDesc, binding: Binding) -> Plan {
+    plan(
+        scene,
+        &PlanOptions {
+            size: SIZE,
+            binding,
+            ..PlanOptions::default()
+        },
+    )
+    .unwrap()
+}
+
+/// Fails unless the film is the expected one, bit for bit.
+fn expect_same(what: &str, expected: &Film, film: &Film) {
+    let difference = first_difference(&expected.image(), &film.image());
+    assert_eq!(difference, None, "{what}");
+    assert_eq!(expected.error(), film.error(), "{what}");
+}
+
+/// Compares all ways to render a scene; `compiled` lane counts are compiled as well.
+fn check(scene: &SceneDesc, samples: u32, compiled: &[LaneCount]) {
+    let plan = planned(scene, Binding::Structure);
+    let two_threads = Look::new(SIZE, samples);
+    let looks = [
+        Look {
+            threads: 1,
+            ..two_threads
+        },
+        two_threads,
+    ];
+    let expected = Prepared::new(&plan, LaneCount::One).interpret(&looks[0]);
+    assert_eq!(expected.invalid_samples(), 0);
+    // What is compared is a picture: black or uniform ones would agree for nothing.
+    let shades: BTreeSet<_> = expected
+        .image()
+        .iter()
+        .map(|rgb| rgb.map(f32::to_bits))
+        .collect();
+    assert!(
+        shades.len() > 50 || scene.instances.len() < 2,
+        "{}: {} shades",
+        scene.name,
+        shades.len()
+    );
+    assert!(mean(&expected.image()).iter().all(|c| *c > 0.0));
+
+    for lanes in LaneCount::ALL {
+        let prepared = Prepared::new(&plan, lanes);
+        let renderer = compiled
+            .contains(&lanes)
+            .then(|| xtask::compile::compile(&plan, lanes).unwrap());
+        for look in looks {
+            let what = format!("{}, {lanes} lanes, {} threads", scene.name, look.threads);
+            expect_same(
+                &format!("{what}, interpreted"),
+                &expected,
+                &prepared.interpret(&look),
+            );
+            if let Some(renderer) = &renderer {
+                expect_same(
+                    &format!("{what}, specialised"),
+                    &expected,
+                    &prepared.render(renderer, &look),
+                );
+            }
+        }
+    }
+    let constants = planned(scene, Binding::Constants);
+    let film = Prepared::new(&constants, LaneCount::Eight).interpret(&two_threads);
+    expect_same(&format!("{}, constants", scene.name), &expected, &film);
+}
+
+const BOTH: &[LaneCount] = &[LaneCount::Eight, LaneCount::Sixteen];
+
+#[test]
+fn room_fixture() {
+    check(&fixtures::room(), 4, BOTH);
+}
+
+#[test]
+fn textures_fixture() {
+    check(&fixtures::textures(), 4, BOTH);
+}
+
+#[test]
+fn lights_fixture() {
+    check(&fixtures::lights(), 4, BOTH);
+}
+
+#[test]
+fn one_triangle_and_nothing() {
+    check(&fixtures::triangle(), 4, &[LaneCount::Eight]);
+    check(
+        &SceneDesc {
+            name: "nothing".to_owned(),
+            ..SceneDesc::default()
+        },
+        2,
+        &[LaneCount::Sixteen],
+    );
+}
+
+fn check_shared(file: &str, compiled: &[LaneCount]) {
+    let Some(scenes) = scenes() else { return };
+    check(&read_scene(&scenes.join(file), None).unwrap(), 2, compiled);
+}
+
+#[test]
+fn cornell() {
+    check_shared("interiors/cornell-generated.glb", BOTH);
+}
+
+#[test]
+fn teapot() {
+    check_shared("interiors/teapot-full.glb", BOTH);
+}
+
+#[test]
+fn living_room() {
+    check_shared(
+        "interiors/living-room-grey-white.glb",
+        &[LaneCount::native()],
+    );
+}
+
+#[test]
+fn alpha_blend() {
+    check_shared(
+        "materials/AlphaBlendModeTest/AlphaBlendModeTest.gltf",
+        &[LaneCount::native()],
+    );
+}
+
+#[test]
+fn texture_settings() {
+    check_shared(
+        "materials/TextureSettingsTest/TextureSettingsTest.gltf",
+        &[],
+    );
+}
+
+/// An effect that no fixture calls for would be compiled by no test.
+#[test]
+fn fixtures_call_for_every_effect() {
+    let scenes = [fixtures::room(), fixtures::textures(), fixtures::lights()];
+    let effects: Vec<_> = scenes
+        .iter()
+        .map(|scene| Effects::of(&planned(scene, Binding::Structure)))
+        .collect();
+    let missing: Vec<_> = Effect::ALL
+        .iter()
+        .filter(|effect| effects.iter().all(|e| e.reasons(**effect).is_empty()))
+        .collect();
+    assert!(missing.is_empty(), "no fixture calls for {missing:?}");
+}

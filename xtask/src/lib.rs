@@ -1,0 +1,35 @@
+//! The command line of Residual: `cargo xtask render scene.gltf`.
+//!
+//! A library, so that tests can compile renderers and build the command line for themselves.
+
+mod args;
+pub mod compile;
+mod emit;
+mod inspect;
+mod output;
+mod render;
+mod scene;
+mod stats;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::args::{Cli, Command};
+
+/// The command line: status 0, 1 for a failed job, 2 for bad usage.
+pub fn main() -> ExitCode {
+    // Bad usage ends in clap, with status 2.
+    let result = match Cli::parse().command {
+        Command::Render(args) => render::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Emit(args) => emit::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
