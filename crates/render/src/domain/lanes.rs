@@ -5,7 +5,7 @@ use fearless_simd::{
     f32x8, f32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
 };
 
-use super::scalar::Uint;
+use super::single::Uint;
 use super::{Buffer, Buffers, Bundle, Domain, Scalar};
 
 /// A domain whose numbers are moved to and from arrays: what a device that executes needs.

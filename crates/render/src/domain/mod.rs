@@ -19,15 +19,13 @@
 //! [`Domain::branch`] or a select), no loops whose length depends on values, no state.
 
 mod lanes;
-mod precise;
-mod scalar;
+mod single;
 pub mod tape;
 
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
 pub use lanes::{Lanes, Lanes4, Lanes8, Lanes16};
-pub use precise::Precise;
-pub use scalar::{Scalar, Uint};
+pub use single::{Precise, Scalar, Uint};
 
 /// A real number of a domain.
 pub trait Real:
