@@ -1,10 +1,13 @@
 //! From a scene file to a renderer: import, effects, plan, emission.
 
+pub mod build_script;
 pub mod desc;
 mod desc_validate;
 pub mod effects;
 pub mod emit;
+mod fingerprint;
 pub mod import;
 pub mod plan;
 
 pub use desc_validate::Violation;
+pub use fingerprint::{StructureMismatch, fingerprint};

@@ -9,6 +9,7 @@ use residual_render::program::{
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 
+use crate::fingerprint::fingerprint;
 use crate::plan::Plan;
 
 /// The renderer of a scene as a module: a type `Scene` and, for `lanes` (a variant of the CPU device's `LaneCount`),
@@ -27,6 +28,10 @@ fn write(out: &mut String, plan: &Plan, lanes: &str) -> fmt::Result {
         plan.name
     )?;
     out.push_str(HEADER);
+    writeln!(out, "\nimpl Scene<'_> {{")?;
+    writeln!(out, "    /// The fingerprint of the structure: the plan whose data are rendered must have the same.")?;
+    writeln!(out, "    #[allow(dead_code, reason = \"read by programs that embed the renderer\")]")?;
+    writeln!(out, "    pub const STRUCTURE: u64 = {:#018x};\n}}", fingerprint(structure))?;
     scene(out, plan)?;
     hit_filter(out, structure.culling, &structure.programs)?;
     for (number, program) in structure.programs.iter().enumerate() {

@@ -37,15 +37,37 @@ pub(super) fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, String> {
             "{uri}: remote files are not fetched; download it beside the scene"
         ));
     }
+    let path = uri_path(uri, folder)?;
+    read(&path).map_err(|message| format!("{} {message}", path.display()))
+}
+
+/// The file that a URI without a scheme names.
+pub(super) fn uri_path(uri: &str, folder: &Path) -> Result<PathBuf, String> {
     let decoded =
         String::from_utf8(percent_decode(uri)).map_err(|_| format!("{uri}: not UTF-8"))?;
     // Exporters forget to encode; a file literally called `a%20b.png` is tried second.
-    let candidates = [folder.join(&decoded), folder.join(uri)];
-    let path = candidates
-        .iter()
-        .find(|path| path.is_file())
-        .unwrap_or(&candidates[0]);
-    read(path).map_err(|message| format!("{} {message}", path.display()))
+    let [decoded, literal] = [folder.join(&decoded), folder.join(uri)];
+    Ok(if !decoded.is_file() && literal.is_file() {
+        literal
+    } else {
+        decoded
+    })
+}
+
+/// The files that a glTF file refers to; `None` where it is another kind of file or cannot be read.
+pub(crate) fn external_files(scene: &Path) -> Option<Vec<PathBuf>> {
+    if !scene.extension()?.eq_ignore_ascii_case("gltf") {
+        return None;
+    }
+    let root: serde_json::Value = serde_json::from_slice(&read(scene).ok()?).ok()?;
+    let folder = scene.parent()?;
+    let entries = ["buffers", "images"]
+        .into_iter()
+        .filter_map(|array| root.get(array)?.as_array())
+        .flatten();
+    let uris = entries.filter_map(|entry| entry.get("uri")?.as_str());
+    let files = uris.filter(|uri| !uri.starts_with("data:") && !uri.contains("://"));
+    Some(files.filter_map(|uri| uri_path(uri, folder).ok()).collect())
 }
 
 /// Finds a file named in an OBJ or MTL file: backslashes are separators, and where nothing has the exact

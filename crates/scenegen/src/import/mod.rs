@@ -37,6 +37,7 @@ mod triangles;
 
 pub use environment::EnvironmentOptions;
 pub use error::ImportError;
+pub(crate) use files::external_files;
 
 /// What the user wants besides the file.
 #[derive(Debug, Clone, Default)]
