@@ -2,19 +2,25 @@
 
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3, Vec4};
 use residual_scenegen::desc::{
-    AlphaMode, CameraDesc, ColorInput, EnvironmentDesc, Filter, ImageDesc, InstanceDesc, LightDesc, LightKind,
-    MaterialDesc, MeshDesc, MetallicRoughness, NormalMap, Phong, Projection, ScalarInput, SceneDesc, SurfaceDesc,
-    Texels, TextureDesc, TextureUse, Wrap,
+    AlphaMode, CameraDesc, ColorInput, EnvironmentDesc, Filter, ImageDesc, InstanceDesc, LightDesc,
+    LightKind, MaterialDesc, MeshDesc, MetallicRoughness, NormalMap, Phong, Projection,
+    ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureDesc, TextureUse, Wrap,
 };
 
 /// A colour without a texture.
 pub fn color(factor: [f32; 3]) -> ColorInput {
-    ColorInput { factor, texture: None }
+    ColorInput {
+        factor,
+        texture: None,
+    }
 }
 
 /// A number without a texture.
 pub fn scalar(factor: f32) -> ScalarInput {
-    ScalarInput { factor, texture: None }
+    ScalarInput {
+        factor,
+        texture: None,
+    }
 }
 
 /// glTF's surface with its defaults, but for base colour, metallic and roughness.
@@ -65,7 +71,12 @@ pub fn material(name: &str, surface: SurfaceDesc) -> MaterialDesc {
 /// A parallelogram with texture coordinates, seen from the side from which `u` turns left to `v`.
 pub fn sheet(corner: [f32; 3], u: [f32; 3], v: [f32; 3]) -> MeshDesc {
     let (corner, u, v) = (Vec3::from(corner), Vec3::from(u), Vec3::from(v));
-    let uvs = vec![Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0), Vec2::new(0.0, 0.0)];
+    let uvs = vec![
+        Vec2::new(0.0, 1.0),
+        Vec2::new(1.0, 1.0),
+        Vec2::new(1.0, 0.0),
+        Vec2::new(0.0, 0.0),
+    ];
     MeshDesc {
         name: "sheet".to_owned(),
         material: 0,
@@ -87,10 +98,16 @@ pub fn sphere(centre: [f32; 3], radius: f32) -> MeshDesc {
             std::f32::consts::PI * row as f32 / ROWS as f32,
             std::f32::consts::TAU * column as f32 / COLUMNS as f32,
         );
-        Vec3::new(polar.sin() * azimuth.cos(), polar.cos(), polar.sin() * azimuth.sin())
+        Vec3::new(
+            polar.sin() * azimuth.cos(),
+            polar.cos(),
+            polar.sin() * azimuth.sin(),
+        )
     };
     let places = || (0..=ROWS).flat_map(|row| (0..=COLUMNS).map(move |column| (row, column)));
-    let normals: Vec<_> = places().map(|(row, column)| vertex(row, column % COLUMNS)).collect();
+    let normals: Vec<_> = places()
+        .map(|(row, column)| vertex(row, column % COLUMNS))
+        .collect();
     let uv = |(row, column)| Vec2::new(column as f32 / COLUMNS as f32, row as f32 / ROWS as f32);
     let cell = |row: u32, column: u32| {
         let [a, b] = [row, row + 1].map(|row| row * (COLUMNS + 1) + column);
@@ -99,12 +116,17 @@ pub fn sphere(centre: [f32; 3], radius: f32) -> MeshDesc {
     MeshDesc {
         name: "sphere".to_owned(),
         material: 0,
-        positions: normals.iter().map(|n| Vec3::from(centre) + *n * radius).collect(),
+        positions: normals
+            .iter()
+            .map(|n| Vec3::from(centre) + *n * radius)
+            .collect(),
         normals,
         tangents: None,
         uvs: [Some(places().map(uv).collect()), None],
         colors: None,
-        triangles: (0..ROWS).flat_map(|row| (0..COLUMNS).flat_map(move |column| cell(row, column))).collect(),
+        triangles: (0..ROWS)
+            .flat_map(|row| (0..COLUMNS).flat_map(move |column| cell(row, column)))
+            .collect(),
     }
 }
 
@@ -117,7 +139,12 @@ pub struct Builder {
 impl Builder {
     /// An empty scene of this name.
     pub fn new(name: &str) -> Self {
-        Self { scene: SceneDesc { name: name.to_owned(), ..SceneDesc::default() } }
+        Self {
+            scene: SceneDesc {
+                name: name.to_owned(),
+                ..SceneDesc::default()
+            },
+        }
     }
 
     /// Adds meshes of one material.
@@ -129,14 +156,21 @@ impl Builder {
                 mesh: number,
                 transform: Affine3A::IDENTITY,
             });
-            self.scene.meshes.push(MeshDesc { material: self.scene.materials.len(), ..mesh });
+            self.scene.meshes.push(MeshDesc {
+                material: self.scene.materials.len(),
+                ..mesh
+            });
         }
         self.scene.materials.push(material);
     }
 
     /// Adds a light.
     pub fn light(&mut self, kind: LightKind, intensity: [f32; 3]) {
-        self.scene.lights.push(LightDesc { name: "light".to_owned(), kind, intensity });
+        self.scene.lights.push(LightDesc {
+            name: "light".to_owned(),
+            kind,
+            intensity,
+        });
     }
 
     /// Adds a camera that looks from one point at another.
@@ -145,16 +179,30 @@ impl Builder {
         let back = (position - target).normalize();
         let right = Vec3::Y.cross(back).normalize();
         let rotation = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
-        self.scene.cameras.push(CameraDesc { name: name.to_owned(), position, rotation, projection });
+        self.scene.cameras.push(CameraDesc {
+            name: name.to_owned(),
+            position,
+            rotation,
+            projection,
+        });
     }
 
     /// Adds a coloured image of bytes, all texels different; its alpha takes all values.
     fn bytes(&mut self, width: u32, height: u32) -> usize {
         let texel = |i: u32| {
             let x = i.wrapping_mul(2_654_435_761) >> 7;
-            [x as u8, (x >> 8) as u8, (x >> 16) as u8, (i * 255 / (width * height - 1)) as u8]
+            [
+                x as u8,
+                (x >> 8) as u8,
+                (x >> 16) as u8,
+                (i * 255 / (width * height - 1)) as u8,
+            ]
         };
-        self.image(width, height, Texels::Rgba8((0..width * height).map(texel).collect()))
+        self.image(
+            width,
+            height,
+            Texels::Rgba8((0..width * height).map(texel).collect()),
+        )
     }
 
     /// Adds an image of floating-point numbers, brighter at the top.
@@ -164,19 +212,36 @@ impl Builder {
             let up = 1.0 - y as f32 / height as f32;
             [up * 1.5, up + 0.1 * (x % 3) as f32, 0.4, 1.0]
         };
-        self.image(width, height, Texels::RgbaF32((0..width * height).map(texel).collect()))
+        self.image(
+            width,
+            height,
+            Texels::RgbaF32((0..width * height).map(texel).collect()),
+        )
     }
 
     fn image(&mut self, width: u32, height: u32, texels: Texels) -> usize {
         let name = format!("image {}", self.scene.images.len());
-        self.scene.images.push(ImageDesc { name, width, height, texels });
+        self.scene.images.push(ImageDesc {
+            name,
+            width,
+            height,
+            texels,
+        });
         self.scene.images.len() - 1
     }
 
     /// Adds a texture.
     fn texture(&mut self, image: usize, wrap: [Wrap; 2], filter: Filter) -> TextureUse {
-        self.scene.textures.push(TextureDesc { image, wrap, filter });
-        TextureUse { texture: self.scene.textures.len() - 1, uv_set: 0, transform: None }
+        self.scene.textures.push(TextureDesc {
+            image,
+            wrap,
+            filter,
+        });
+        TextureUse {
+            texture: self.scene.textures.len() - 1,
+            uv_set: 0,
+            transform: None,
+        }
     }
 
     /// The scene.
@@ -202,17 +267,36 @@ pub fn room() -> SceneDesc {
         tangents: Some(vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 4]),
         ..sheet([-2.0, 0.0, 2.0], [4.0, 0.0, 0.0], [0.0, 0.0, -4.0])
     };
-    let relief = NormalMap { texture: smooth.clone(), scale: 0.4 };
+    let relief = NormalMap {
+        texture: smooth.clone(),
+        scale: 0.4,
+    };
     let tiles = SurfaceDesc::MetallicRoughness(metallic_roughness([0.7, 0.6, 0.5], 0.0, 0.4));
-    b.add(MaterialDesc { normal_map: Some(relief), ..material("tiles", tiles) }, [floor]);
+    b.add(
+        MaterialDesc {
+            normal_map: Some(relief),
+            ..material("tiles", tiles)
+        },
+        [floor],
+    );
 
     let wall = MeshDesc {
-        colors: Some((0..4).map(|i| Vec4::new(1.0, 0.3 * i as f32, 0.2, 1.0)).collect()),
+        colors: Some(
+            (0..4)
+                .map(|i| Vec4::new(1.0, 0.3 * i as f32, 0.2, 1.0))
+                .collect(),
+        ),
         ..sheet([-2.0, 0.0, -2.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0])
     };
-    let surface = MetallicRoughness { specular: scalar(0.0), ..metallic_roughness([1.0; 3], 0.0, 1.0) };
+    let surface = MetallicRoughness {
+        specular: scalar(0.0),
+        ..metallic_roughness([1.0; 3], 0.0, 1.0)
+    };
     b.add(
-        MaterialDesc { double_sided: false, ..material("wall", SurfaceDesc::MetallicRoughness(surface)) },
+        MaterialDesc {
+            double_sided: false,
+            ..material("wall", SurfaceDesc::MetallicRoughness(surface))
+        },
         [wall],
     );
     let side = sheet([-2.0, 0.0, 2.0], [0.0, 0.0, -4.0], [0.0, 3.0, 0.0]);
@@ -222,20 +306,48 @@ pub fn room() -> SceneDesc {
         ("gold", metallic_roughness([1.0, 0.8, 0.3], 1.0, 0.25)),
         ("half metal", metallic_roughness([0.5, 0.7, 0.9], 0.5, 0.5)),
         ("solid glass", glass(true)),
-        ("frost", MetallicRoughness { transmission: scalar(0.6), ..metallic_roughness([0.8; 3], 0.0, 0.0) }),
+        (
+            "frost",
+            MetallicRoughness {
+                transmission: scalar(0.6),
+                ..metallic_roughness([0.8; 3], 0.0, 0.0)
+            },
+        ),
     ];
     for (i, (name, surface)) in balls.into_iter().enumerate() {
         let centre = [-1.35 + 0.9 * i as f32, 0.45, 0.3];
-        b.add(material(name, SurfaceDesc::MetallicRoughness(surface)), [sphere(centre, 0.4)]);
+        b.add(
+            material(name, SurfaceDesc::MetallicRoughness(surface)),
+            [sphere(centre, 0.4)],
+        );
     }
     let pane = sheet([0.2, 0.9, 0.9], [1.0, 0.0, 0.0], [0.0, 0.8, 0.2]);
-    b.add(material("thin glass", SurfaceDesc::MetallicRoughness(glass(false))), [pane]);
+    b.add(
+        material("thin glass", SurfaceDesc::MetallicRoughness(glass(false))),
+        [pane],
+    );
 
-    let lamp = MaterialDesc { emission: color([9.0, 8.0, 6.0]), double_sided: false, ..material("lamp", matte([0.0; 3])) };
-    b.add(lamp, [sheet([-0.6, 2.9, -0.6], [1.2, 0.0, 0.0], [0.0, 0.0, 1.2])]);
-    let screen = ColorInput { factor: [1.5; 3], texture: Some(smooth) };
-    let screen = MaterialDesc { emission: screen, ..material("screen", matte([0.1; 3])) };
-    b.add(screen, [sheet([1.9, 0.4, 1.0], [0.0, 0.0, -1.6], [0.0, 1.2, 0.0])]);
+    let lamp = MaterialDesc {
+        emission: color([9.0, 8.0, 6.0]),
+        double_sided: false,
+        ..material("lamp", matte([0.0; 3]))
+    };
+    b.add(
+        lamp,
+        [sheet([-0.6, 2.9, -0.6], [1.2, 0.0, 0.0], [0.0, 0.0, 1.2])],
+    );
+    let screen = ColorInput {
+        factor: [1.5; 3],
+        texture: Some(smooth),
+    };
+    let screen = MaterialDesc {
+        emission: screen,
+        ..material("screen", matte([0.1; 3]))
+    };
+    b.add(
+        screen,
+        [sheet([1.9, 0.4, 1.0], [0.0, 0.0, -1.6], [0.0, 1.2, 0.0])],
+    );
     b.camera("front", [0.3, 1.4, 5.5], [0.0, 1.1, 0.0], PERSPECTIVE);
     b.finish()
 }
@@ -258,28 +370,59 @@ pub fn textures() -> SceneDesc {
                 surface.base_color.texture = Some(texture.clone());
                 surface.roughness.texture = Some((texture.clone(), 1));
                 if number % 3 == 0 {
-                    surface.metallic = ScalarInput { factor: 1.0, texture: Some((texture.clone(), 2)) };
+                    surface.metallic = ScalarInput {
+                        factor: 1.0,
+                        texture: Some((texture.clone(), 2)),
+                    };
                 }
                 let alpha_mode = match number % 4 {
                     0 => AlphaMode::Mask(0.4),
                     1 => AlphaMode::Blend,
                     _ => AlphaMode::Opaque,
                 };
-                let alpha = ScalarInput { factor: 0.9, texture: Some((texture, 3)) };
-                let corner = [(number % 4) as f32 - 2.0, row as f32 - 1.5, 0.3 * (number % 2) as f32];
+                let alpha = ScalarInput {
+                    factor: 0.9,
+                    texture: Some((texture, 3)),
+                };
+                let corner = [
+                    (number % 4) as f32 - 2.0,
+                    row as f32 - 1.5,
+                    0.3 * (number % 2) as f32,
+                ];
                 let mut mesh = sheet(corner, [0.9, 0.0, 0.1], [0.1, 0.9, 0.0]);
-                mesh.uvs[1] = mesh.uvs[0].as_ref().map(|uvs| uvs.iter().map(|uv| Vec2::new(uv.y, uv.x) * 0.7).collect());
+                mesh.uvs[1] = mesh.uvs[0]
+                    .as_ref()
+                    .map(|uvs| uvs.iter().map(|uv| Vec2::new(uv.y, uv.x) * 0.7).collect());
                 let name = format!("{wrap:?} {filter:?} {number}");
                 let surface = SurfaceDesc::MetallicRoughness(surface);
-                b.add(MaterialDesc { alpha_mode, alpha, ..material(&name, surface) }, [mesh]);
+                b.add(
+                    MaterialDesc {
+                        alpha_mode,
+                        alpha,
+                        ..material(&name, surface)
+                    },
+                    [mesh],
+                );
                 number += 1;
             }
         }
     }
-    b.add(material("back", matte([0.6, 0.5, 0.4])), [sheet([-3.0, -2.0, -1.0], [6.0, 0.0, 0.0], [0.0, 4.0, 0.0])]);
+    b.add(
+        material("back", matte([0.6, 0.5, 0.4])),
+        [sheet([-3.0, -2.0, -1.0], [6.0, 0.0, 0.0], [0.0, 4.0, 0.0])],
+    );
     let sky = b.floats(16, 8);
-    b.scene.environment = Some(EnvironmentDesc { image: sky, strength: 0.8, rotation: 0.7 });
-    b.camera("flat", [0.5, 0.4, 5.0], [0.0, 0.0, 0.0], Projection::Orthographic { ymag: 1.9 });
+    b.scene.environment = Some(EnvironmentDesc {
+        image: sky,
+        strength: 0.8,
+        rotation: 0.7,
+    });
+    b.camera(
+        "flat",
+        [0.5, 0.4, 5.0],
+        [0.0, 0.0, 0.0],
+        Projection::Orthographic { ymag: 1.9 },
+    );
     b.finish()
 }
 
@@ -288,27 +431,66 @@ pub fn textures() -> SceneDesc {
 pub fn lights() -> SceneDesc {
     let mut b = Builder::new("lights");
     let phong = |diffuse, specular, exponent| {
-        SurfaceDesc::Phong(Phong { diffuse: color(diffuse), specular: color(specular), exponent: scalar(exponent) })
+        SurfaceDesc::Phong(Phong {
+            diffuse: color(diffuse),
+            specular: color(specular),
+            exponent: scalar(exponent),
+        })
     };
     b.add(
         material("ground", phong([0.5, 0.5, 0.4], [0.2; 3], 12.0)),
         [sheet([-3.0, 0.0, 3.0], [6.0, 0.0, 0.0], [0.0, 0.0, -6.0])],
     );
-    b.add(material("shiny", phong([0.1, 0.2, 0.5], [0.6; 3], 80.0)), [sphere([-1.1, 0.6, 0.0], 0.6)]);
-    b.add(material("mirror", phong([0.0; 3], [0.8, 0.7, 0.6], 500.0)), [sphere([0.2, 0.5, -0.6], 0.5)]);
-    let clear = SurfaceDesc::Dielectric { ior: 1.4, transmittance: [0.9, 1.0, 0.9] };
+    b.add(
+        material("shiny", phong([0.1, 0.2, 0.5], [0.6; 3], 80.0)),
+        [sphere([-1.1, 0.6, 0.0], 0.6)],
+    );
+    b.add(
+        material("mirror", phong([0.0; 3], [0.8, 0.7, 0.6], 500.0)),
+        [sphere([0.2, 0.5, -0.6], 0.5)],
+    );
+    let clear = SurfaceDesc::Dielectric {
+        ior: 1.4,
+        transmittance: [0.9, 1.0, 0.9],
+    };
     b.add(material("clear", clear), [sphere([1.2, 0.5, 0.4], 0.5)]);
     let mut tip = sheet([-0.4, 2.4, 0.0], [0.8, 0.0, 0.0], [0.0, 0.0, 0.8]);
     tip.triangles.truncate(1);
-    b.add(MaterialDesc { emission: color([5.0, 3.0, 2.0]), ..material("tip", matte([0.3; 3])) }, [tip]);
-    b.light(LightKind::Point { position: Vec3::new(2.0, 2.0, 2.0) }, [4.0, 4.0, 5.0]);
-    b.light(LightKind::Point { position: Vec3::new(-2.0, 1.0, 2.0) }, [1.0, 0.5, 0.2]);
+    b.add(
+        MaterialDesc {
+            emission: color([5.0, 3.0, 2.0]),
+            ..material("tip", matte([0.3; 3]))
+        },
+        [tip],
+    );
+    b.light(
+        LightKind::Point {
+            position: Vec3::new(2.0, 2.0, 2.0),
+        },
+        [4.0, 4.0, 5.0],
+    );
+    b.light(
+        LightKind::Point {
+            position: Vec3::new(-2.0, 1.0, 2.0),
+        },
+        [1.0, 0.5, 0.2],
+    );
     let down = Vec3::new(0.2, -1.0, -0.3).normalize();
     b.light(
-        LightKind::Spot { position: Vec3::new(-1.0, 3.0, 1.0), direction: down, inner: 0.3, outer: 0.5 },
+        LightKind::Spot {
+            position: Vec3::new(-1.0, 3.0, 1.0),
+            direction: down,
+            inner: 0.3,
+            outer: 0.5,
+        },
         [12.0, 10.0, 8.0],
     );
-    b.light(LightKind::Directional { direction: Vec3::new(-0.4, -0.8, -0.3).normalize() }, [0.6, 0.7, 0.8]);
+    b.light(
+        LightKind::Directional {
+            direction: Vec3::new(-0.4, -0.8, -0.3).normalize(),
+        },
+        [0.6, 0.7, 0.8],
+    );
     b.camera("front", [0.0, 1.6, 5.0], [0.0, 0.7, 0.0], PERSPECTIVE);
     b.finish()
 }

@@ -16,7 +16,10 @@ pub fn scenes() -> Option<PathBuf> {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes");
     let path = std::env::var_os("RESIDUAL_SCENES").map_or(default, PathBuf::from);
     if !path.is_dir() {
-        println!("skipped: {} is not there (set RESIDUAL_SCENES)", path.display());
+        println!(
+            "skipped: {} is not there (set RESIDUAL_SCENES)",
+            path.display()
+        );
         return None;
     }
     Some(path)
@@ -32,7 +35,10 @@ pub fn scene_files(folder: &Path) -> Vec<PathBuf> {
             let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
             if path.is_dir() {
                 folders.push(path);
-            } else if ["gltf", "glb", "obj"].iter().any(|known| extension == *known) {
+            } else if ["gltf", "glb", "obj"]
+                .iter()
+                .any(|known| extension == *known)
+            {
                 files.push(path);
             }
         }

@@ -14,7 +14,12 @@ pub fn first_difference(a: &[[f32; 3]], b: &[[f32; 3]]) -> Option<String> {
     let differs = |at: &usize| bits(&a[*at]) != bits(&b[*at]);
     let first = (0..a.len()).find(differs)?;
     let count = (0..a.len()).filter(differs).count();
-    Some(format!("{count} of {} pixels, first number {first}: {:?} and {:?}", a.len(), a[first], b[first]))
+    Some(format!(
+        "{count} of {} pixels, first number {first}: {:?} and {:?}",
+        a.len(),
+        a[first],
+        b[first]
+    ))
 }
 
 /// Mean of each channel.
@@ -63,7 +68,11 @@ mod tests {
         for (pixel, channel) in [(0, 0), (7, 2), (11, 1)] {
             let mut other = picture.clone();
             other[pixel][channel] = other[pixel][channel].next_up();
-            assert!(first_difference(&picture, &other).unwrap().starts_with("1 of 12 pixels"));
+            assert!(
+                first_difference(&picture, &other)
+                    .unwrap()
+                    .starts_with("1 of 12 pixels")
+            );
         }
         assert!(first_difference(&[[0.0; 3]], &[[-0.0, 0.0, 0.0]]).is_some());
         assert!(first_difference(&picture, &picture[1..]).is_some());

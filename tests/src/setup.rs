@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use residual_bvh::BuildQuality;
 use residual_device_cpu::lanes::OwnedBvh;
-use residual_device_cpu::{CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer};
+use residual_device_cpu::{
+    CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer,
+};
 use residual_render::film::Film;
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::import::{EnvironmentOptions, ImportError, ImportOptions, import};
@@ -15,9 +17,18 @@ use residual_scenegen::plan::Plan;
 /// # Errors
 /// If the file is refused.
 pub fn read_scene(path: &Path, environment: Option<PathBuf>) -> Result<SceneDesc, ImportError> {
-    let environment =
-        environment.map(|path| EnvironmentOptions { path, strength: 1.0, rotation_degrees: 0.0 });
-    import(path, &ImportOptions { environment, strict: false })
+    let environment = environment.map(|path| EnvironmentOptions {
+        path,
+        strength: 1.0,
+        rotation_degrees: 0.0,
+    });
+    import(
+        path,
+        &ImportOptions {
+            environment,
+            strict: false,
+        },
+    )
 }
 
 /// How a picture is taken.
@@ -40,7 +51,14 @@ pub struct Look {
 impl Look {
     /// On two threads, with paths of eight vertices.
     pub fn new(size: [u32; 2], samples: u32) -> Self {
-        Self { size, samples, max_depth: 8, seed: 0, threads: 2, tile_size: None }
+        Self {
+            size,
+            samples,
+            max_depth: 8,
+            seed: 0,
+            threads: 2,
+            tile_size: None,
+        }
     }
 }
 
@@ -56,14 +74,21 @@ impl<'a> Prepared<'a> {
     pub fn new(plan: &'a Plan, lanes: LaneCount) -> Self {
         const MANY: usize = 150_000;
         let many = plan.data.triangle_count() > MANY;
-        let quality = if many { BuildQuality::Fast } else { BuildQuality::Best };
+        let quality = if many {
+            BuildQuality::Fast
+        } else {
+            BuildQuality::Best
+        };
         let bvh = OwnedBvh::build(&plan.data, lanes, quality);
         Self { plan, bvh, lanes }
     }
 
     /// Renders by interpretation.
     pub fn interpret(&self, look: &Look) -> Film {
-        self.render(&Interpreter::new(self.plan.structure.clone(), self.lanes), look)
+        self.render(
+            &Interpreter::new(self.plan.structure.clone(), self.lanes),
+            look,
+        )
     }
 
     /// Renders by a renderer made for the plan and the lane count.
@@ -83,7 +108,10 @@ impl<'a> Prepared<'a> {
             seed: look.seed,
             threads: look.threads,
         };
-        let view = SceneView { buffers: self.plan.data.buffers(), bvh: self.bvh.view() };
+        let view = SceneView {
+            buffers: self.plan.data.buffers(),
+            bvh: self.bvh.view(),
+        };
         device.render(|| renderer, &view, &options, |_| {}).0
     }
 }

@@ -24,13 +24,21 @@ fn workplace() -> TempDir {
         "cameras": [lens, lens],
     });
     fs::write(folder.path().join("cameras.gltf"), cameras.to_string()).unwrap();
-    fs::write(folder.path().join("empty.gltf"), r#"{ "asset": { "version": "2.0" } }"#).unwrap();
+    fs::write(
+        folder.path().join("empty.gltf"),
+        r#"{ "asset": { "version": "2.0" } }"#,
+    )
+    .unwrap();
     folder
 }
 
 /// Runs the command line in a folder.
 fn run(folder: &TempDir, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_residual-tests")).current_dir(folder).args(args).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_residual-tests"))
+        .current_dir(folder)
+        .args(args)
+        .output()
+        .unwrap()
 }
 
 /// Renders quickly: `--tier interpreted`, 16 × 12 pixels, 2 samples, unless `args` say otherwise.
@@ -51,7 +59,12 @@ fn stderr(output: &Output) -> String {
 
 /// Fails unless the command ended well.
 fn good(output: Output) -> Output {
-    assert!(output.status.success(), "{}: {}", output.status, stderr(&output));
+    assert!(
+        output.status.success(),
+        "{}: {}",
+        output.status,
+        stderr(&output)
+    );
     output
 }
 
@@ -91,7 +104,12 @@ fn bad_usage_ends_in_status_2() {
     ];
     for args in cases {
         let output = run(&folder, args);
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {}", stderr(&output));
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{args:?}: {}",
+            stderr(&output)
+        );
         assert!(!stderr(&output).is_empty(), "{args:?}");
     }
     assert!(!folder.path().join("triangle.png").exists());
@@ -100,18 +118,33 @@ fn bad_usage_ends_in_status_2() {
 #[test]
 fn failed_jobs_end_in_status_1_and_say_why() {
     let folder = workplace();
-    fails(&render(&folder, &["missing.glb"]), &["missing.glb", "exists"]);
+    fails(
+        &render(&folder, &["missing.glb"]),
+        &["missing.glb", "exists"],
+    );
     fs::write(folder.path().join("scene.fbx"), "x").unwrap();
-    fails(&render(&folder, &["scene.fbx"]), &["scene.fbx", ".gltf, .glb or .obj"]);
+    fails(
+        &render(&folder, &["scene.fbx"]),
+        &["scene.fbx", ".gltf, .glb or .obj"],
+    );
     fs::write(folder.path().join("broken.gltf"), "{").unwrap();
     fails(&render(&folder, &["broken.gltf"]), &["broken.gltf"]);
     fails(
         &render(&folder, &["cameras.gltf", "--camera", "middle"]),
         &["cameras.gltf", "\"middle\"", "\"left\"", "\"right\""],
     );
-    fails(&render(&folder, &["cameras.gltf", "--camera", "2"]), &["\"2\"", "\"left\""]);
-    fails(&render(&folder, &["triangle.obj", "--camera", "0"]), &["no cameras"]);
-    fails(&render(&folder, &["triangle.obj", "--env", "missing.hdr"]), &["missing.hdr"]);
+    fails(
+        &render(&folder, &["cameras.gltf", "--camera", "2"]),
+        &["\"2\"", "\"left\""],
+    );
+    fails(
+        &render(&folder, &["triangle.obj", "--camera", "0"]),
+        &["no cameras"],
+    );
+    fails(
+        &render(&folder, &["triangle.obj", "--env", "missing.hdr"]),
+        &["missing.hdr"],
+    );
     fails(&run(&folder, &["inspect", "missing.glb"]), &["missing.glb"]);
     for camera in ["right", "1"] {
         good(render(&folder, &["cameras.gltf", "--camera", camera]));
@@ -125,7 +158,15 @@ fn outputs_that_cannot_be_written_are_refused_before_rendering() {
     fs::create_dir(folder.path().join("folder.png")).unwrap();
     let refuse = |output: &str, texts: &[&str]| {
         let start = Instant::now();
-        let args = ["triangle.obj", "--time", "2000s", "-o", "good.png", "-o", output];
+        let args = [
+            "triangle.obj",
+            "--time",
+            "2000s",
+            "-o",
+            "good.png",
+            "-o",
+            output,
+        ];
         fails(&render(&folder, &args), texts);
         assert!(start.elapsed() < Duration::from_secs(20));
         assert!(!folder.path().join("good.png").exists());
@@ -156,12 +197,21 @@ fn a_failed_job_leaves_an_existing_file_alone() {
     let kept = folder.path().join("kept.png");
     fs::write(&kept, "precious").unwrap();
     fails(&render(&folder, &["missing.glb", "-o", "kept.png"]), &[]);
-    fails(&render(&folder, &["triangle.obj", "-o", "kept.png", "-o", "kept.jpg"]), &[]);
+    fails(
+        &render(
+            &folder,
+            &["triangle.obj", "-o", "kept.png", "-o", "kept.jpg"],
+        ),
+        &[],
+    );
     assert_eq!(fs::read_to_string(&kept).unwrap(), "precious");
     good(render(&folder, &["triangle.obj", "-o", "kept.png"]));
     assert_eq!(image::open(&kept).unwrap().to_rgb8().dimensions(), (16, 12));
     // Nothing temporary is left beside it.
-    let names: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let names: Vec<_> = fs::read_dir(&folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
     assert_eq!(names.len(), 4, "{names:?}");
 }
 
@@ -169,7 +219,10 @@ fn a_failed_job_leaves_an_existing_file_alone() {
 fn the_image_is_named_after_the_scene() {
     let folder = workplace();
     fs::write(folder.path().join("house.v2.obj"), TRIANGLE).unwrap();
-    for (scene, image) in [("triangle.obj", "triangle.png"), ("house.v2.obj", "house.v2.png")] {
+    for (scene, image) in [
+        ("triangle.obj", "triangle.png"),
+        ("house.v2.obj", "house.v2.png"),
+    ] {
         let output = good(render(&folder, &[scene]));
         assert!(folder.path().join(image).exists(), "{}", stderr(&output));
         assert!(stderr(&output).contains(image), "{}", stderr(&output));
@@ -185,43 +238,103 @@ fn statistics(output: &Output) -> Value {
 #[test]
 fn statistics_have_what_the_design_promises() {
     let folder = workplace();
-    let output = good(render(&folder, &["triangle.obj", "--quiet", "--stats", "json", "--spp", "3"]));
+    let output = good(render(
+        &folder,
+        &["triangle.obj", "--quiet", "--stats", "json", "--spp", "3"],
+    ));
     let stats = statistics(&output);
     for number in [
-        "/width", "/height", "/spp", "/seconds/load", "/seconds/bvh", "/seconds/compile", "/seconds/render",
-        "/seconds/total", "/msamples_per_s", "/cpu_seconds", "/rays/camera", "/rays/bounce", "/rays/shadow",
-        "/mrays_per_s", "/programs", "/error/relmse", "/error/ci95", "/invalid_samples", "/peak_rss_mib",
+        "/width",
+        "/height",
+        "/spp",
+        "/seconds/load",
+        "/seconds/bvh",
+        "/seconds/compile",
+        "/seconds/render",
+        "/seconds/total",
+        "/msamples_per_s",
+        "/cpu_seconds",
+        "/rays/camera",
+        "/rays/bounce",
+        "/rays/shadow",
+        "/mrays_per_s",
+        "/programs",
+        "/error/relmse",
+        "/error/ci95",
+        "/invalid_samples",
+        "/peak_rss_mib",
     ] {
-        let value = stats.pointer(number).unwrap_or_else(|| panic!("{number} is missing"));
+        let value = stats
+            .pointer(number)
+            .unwrap_or_else(|| panic!("{number} is missing"));
         let absent_is_fine = !cfg!(target_os = "linux") && value.is_null();
-        assert!(absent_is_fine || value.as_f64().is_some_and(|n| n >= 0.0), "{number}: {value}");
+        assert!(
+            absent_is_fine || value.as_f64().is_some_and(|n| n >= 0.0),
+            "{number}: {value}"
+        );
     }
-    assert_eq!((&stats["scene"], &stats["device"], &stats["tier"]), (&json!("triangle"), &json!("cpu"), &json!("interpreted")));
-    assert_eq!((&stats["width"], &stats["height"], &stats["spp"]), (&json!(16), &json!(12), &json!(3)));
-    assert_eq!((&stats["rays"]["camera"], &stats["invalid_samples"]), (&json!(16 * 12 * 3), &json!(0)));
+    assert_eq!(
+        (&stats["scene"], &stats["device"], &stats["tier"]),
+        (&json!("triangle"), &json!("cpu"), &json!("interpreted"))
+    );
+    assert_eq!(
+        (&stats["width"], &stats["height"], &stats["spp"]),
+        (&json!(16), &json!(12), &json!(3))
+    );
+    assert_eq!(
+        (&stats["rays"]["camera"], &stats["invalid_samples"]),
+        (&json!(16 * 12 * 3), &json!(0))
+    );
     let effects = stats["effects"].as_array().unwrap();
-    assert!(effects.contains(&json!("diffuse reflection")) && effects.contains(&json!("environment")));
+    assert!(
+        effects.contains(&json!("diffuse reflection")) && effects.contains(&json!("environment"))
+    );
     let seconds = |name: &str| stats["seconds"][name].as_f64().unwrap();
     assert!(seconds("load") + seconds("bvh") + seconds("render") <= seconds("total"));
     let rate = stats["msamples_per_s"].as_f64().unwrap() * 1e6 * seconds("render");
     assert!((rate / 576.0 - 1.0).abs() < 1e-6, "{rate} samples");
 
-    let one = good(render(&folder, &["triangle.obj", "--stats", "json", "--spp", "1"]));
-    assert_eq!(statistics(&one)["error"], Value::Null, "one sample says nothing about its error");
+    let one = good(render(
+        &folder,
+        &["triangle.obj", "--stats", "json", "--spp", "1"],
+    ));
+    assert_eq!(
+        statistics(&one)["error"],
+        Value::Null,
+        "one sample says nothing about its error"
+    );
     let text = good(render(&folder, &["triangle.obj", "--stats", "text"]));
-    assert!(String::from_utf8(text.stdout).unwrap().contains("Msamples/s"));
+    assert!(
+        String::from_utf8(text.stdout)
+            .unwrap()
+            .contains("Msamples/s")
+    );
 }
 
 #[test]
 fn a_render_stops_at_its_limits() {
     let folder = workplace();
     let start = Instant::now();
-    let timed = good(render(&folder, &["triangle.obj", "--time", "400ms", "--stats", "json"]));
+    let timed = good(render(
+        &folder,
+        &["triangle.obj", "--time", "400ms", "--stats", "json"],
+    ));
     let seconds = statistics(&timed)["seconds"]["render"].as_f64().unwrap();
-    assert!(seconds >= 0.4 && start.elapsed() < Duration::from_secs(20), "{seconds} s");
+    assert!(
+        seconds >= 0.4 && start.elapsed() < Duration::from_secs(20),
+        "{seconds} s"
+    );
     assert!(statistics(&timed)["spp"].as_u64().unwrap() > 16);
     // Whichever comes first.
-    let args = ["triangle.obj", "--time", "1000s", "--spp", "3", "--stats", "json"];
+    let args = [
+        "triangle.obj",
+        "--time",
+        "1000s",
+        "--spp",
+        "3",
+        "--stats",
+        "json",
+    ];
     assert_eq!(statistics(&good(render(&folder, &args)))["spp"], 3);
 }
 
@@ -230,17 +343,29 @@ fn quiet_is_quiet() {
     let folder = workplace();
     let output = good(render(&folder, &["cameras.gltf", "--quiet"]));
     assert!(output.stdout.is_empty());
-    assert!(stderr(&output).lines().all(|line| line.starts_with("warning: ")), "{}", stderr(&output));
+    assert!(
+        stderr(&output)
+            .lines()
+            .all(|line| line.starts_with("warning: ")),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]
 fn what_the_scene_lacks_is_said() {
     let folder = workplace();
     let message = stderr(&good(render(&folder, &["triangle.obj"])));
-    assert!(message.contains("no camera") && message.contains("no light"), "{message}");
+    assert!(
+        message.contains("no camera") && message.contains("no light"),
+        "{message}"
+    );
     let strict = render(&folder, &["missing.glb", "--strict"]);
     fails(&strict, &["missing.glb"]);
-    let view = stderr(&good(render(&folder, &["cameras.gltf", "--eye", "0,0,3", "--dir", "0,0,-1"])));
+    let view = stderr(&good(render(
+        &folder,
+        &["cameras.gltf", "--eye", "0,0,3", "--dir", "0,0,-1"],
+    )));
     assert!(!view.contains("no camera"), "{view}");
 }
 
@@ -249,14 +374,32 @@ fn what_the_scene_lacks_is_said() {
 fn empty_scenes_and_single_triangles_render() {
     let folder = workplace();
     for scene in ["empty.gltf", "cameras.gltf"] {
-        let message = stderr(&good(render(&folder, &[scene, "-o", "empty.exr", "-o", "empty.png"])));
+        let message = stderr(&good(render(
+            &folder,
+            &[scene, "-o", "empty.exr", "-o", "empty.png"],
+        )));
         assert!(message.contains("nothing to render"), "{message}");
         let (_, pixels) = read_exr(&folder.path().join("empty.exr")).unwrap();
         assert!(pixels.iter().all(|rgb| *rgb == [1.0; 3]));
-        let image = image::open(folder.path().join("empty.png")).unwrap().to_rgb8();
+        let image = image::open(folder.path().join("empty.png"))
+            .unwrap()
+            .to_rgb8();
         assert!(image.pixels().all(|pixel| pixel.0 == [255; 3]));
     }
-    good(render(&folder, &["triangle.obj", "-o", "triangle.exr", "--eye", "0,0,0.5", "--dir", "0,0,-1", "--spp", "64"]));
+    good(render(
+        &folder,
+        &[
+            "triangle.obj",
+            "-o",
+            "triangle.exr",
+            "--eye",
+            "0,0,0.5",
+            "--dir",
+            "0,0,-1",
+            "--spp",
+            "64",
+        ],
+    ));
     let (width, pixels) = read_exr(&folder.path().join("triangle.exr")).unwrap();
     let centre = pixels[6 * width + 8];
     assert!(centre.iter().all(|c| (0.2..0.95).contains(c)), "{centre:?}");
@@ -266,22 +409,43 @@ fn empty_scenes_and_single_triangles_render() {
 fn inspect_speaks_json() {
     let folder = workplace();
     let report = statistics(&good(run(&folder, &["inspect", "triangle.obj", "--json"])));
-    assert_eq!((&report["scene"], &report["triangles"]), (&json!("triangle"), &json!(1)));
+    assert_eq!(
+        (&report["scene"], &report["triangles"]),
+        (&json!("triangle"), &json!(1))
+    );
     assert_eq!(report["effects"]["environment"]["in"], true);
     assert_eq!(report["effects"]["spot lights"]["in"], false);
-    let reasons = report["effects"]["diffuse reflection"]["called_for_by"].as_array().unwrap();
+    let reasons = report["effects"]["diffuse reflection"]["called_for_by"]
+        .as_array()
+        .unwrap();
     assert_eq!(reasons.len(), 1, "{reasons:?}");
     assert_eq!(report["programs"].as_array().unwrap().len(), 1);
     let text = String::from_utf8(good(run(&folder, &["inspect", "triangle.obj"])).stdout).unwrap();
-    assert!(text.contains("effects in:") && text.contains("effects out:"), "{text}");
+    assert!(
+        text.contains("effects in:") && text.contains("effects out:"),
+        "{text}"
+    );
 }
 
 #[test]
 fn emission_is_deterministic_and_the_same_everywhere() {
     let folder = workplace();
-    fs::copy(folder.path().join("triangle.obj"), folder.path().join("house.v2.obj")).unwrap();
-    for (scene, file) in [("triangle.obj", "out/triangle.rs"), ("house.v2.obj", "out/house.v2.rs")] {
-        let emit = |more: &[&str]| good(run(&folder, &[&["emit", scene, "--target", "rust"], more].concat())).stdout;
+    fs::copy(
+        folder.path().join("triangle.obj"),
+        folder.path().join("house.v2.obj"),
+    )
+    .unwrap();
+    for (scene, file) in [
+        ("triangle.obj", "out/triangle.rs"),
+        ("house.v2.obj", "out/house.v2.rs"),
+    ] {
+        let emit = |more: &[&str]| {
+            good(run(
+                &folder,
+                &[&["emit", scene, "--target", "rust"], more].concat(),
+            ))
+            .stdout
+        };
         let text = emit(&[]);
         assert!(text.starts_with(b"// Renderer for the scene"));
         assert_eq!(text, emit(&[]));
@@ -296,9 +460,21 @@ fn emission_is_deterministic_and_the_same_everywhere() {
 fn a_black_sky_is_black() {
     let folder = workplace();
     let sky = folder.path().join("sky.png");
-    image::RgbImage::from_pixel(4, 2, image::Rgb([200; 3])).save(&sky).unwrap();
+    image::RgbImage::from_pixel(4, 2, image::Rgb([200; 3]))
+        .save(&sky)
+        .unwrap();
     for (strength, bright) in [("0", false), ("1", true)] {
-        let args = ["triangle.obj", "--env", "sky.png", "--env-strength", strength, "-o", "a.exr", "--stats", "json"];
+        let args = [
+            "triangle.obj",
+            "--env",
+            "sky.png",
+            "--env-strength",
+            strength,
+            "-o",
+            "a.exr",
+            "--stats",
+            "json",
+        ];
         let stats = statistics(&good(render(&folder, &args)));
         assert_eq!(stats["invalid_samples"], 0);
         let (_, pixels) = read_exr(&folder.path().join("a.exr")).unwrap();
@@ -311,13 +487,25 @@ fn a_black_sky_is_black() {
 #[test]
 fn specialised_renderers_are_compiled_from_any_folder() {
     let folder = workplace();
-    let target = Path::new(env!("CARGO_BIN_EXE_residual-tests")).ancestors().nth(2).unwrap();
+    let target = Path::new(env!("CARGO_BIN_EXE_residual-tests"))
+        .ancestors()
+        .nth(2)
+        .unwrap();
     std::os::unix::fs::symlink(target, folder.path().join("built")).unwrap();
     let render = |tier: &str| {
         let output = Command::new(env!("CARGO_BIN_EXE_residual-tests"))
             .current_dir(&folder)
             .env("CARGO_TARGET_DIR", "built")
-            .args(["render", "triangle.obj", "--size", "16x12", "--spp", "2", "--stats", "json"])
+            .args([
+                "render",
+                "triangle.obj",
+                "--size",
+                "16x12",
+                "--spp",
+                "2",
+                "--stats",
+                "json",
+            ])
             .args(["--tier", tier, "-o", &format!("{tier}.exr")])
             .output()
             .unwrap();
@@ -325,22 +513,39 @@ fn specialised_renderers_are_compiled_from_any_folder() {
         assert_eq!(stats["tier"], tier);
         let compile = stats["seconds"]["compile"].as_f64().unwrap();
         assert_eq!(compile > 0.0, tier == "specialized");
-        read_exr(&folder.path().join(format!("{tier}.exr"))).unwrap().1
+        read_exr(&folder.path().join(format!("{tier}.exr")))
+            .unwrap()
+            .1
     };
-    assert_eq!(first_difference(&render("interpreted"), &render("specialized")), None);
+    assert_eq!(
+        first_difference(&render("interpreted"), &render("specialized")),
+        None
+    );
 }
 
 /// Every format shows the same picture; extensions are read in either case.
 #[test]
 fn pngs_and_exrs_agree() {
     let folder = workplace();
-    good(render(&folder, &["triangle.obj", "-o", "a.exr", "-o", "a.PNG", "--spp", "16"]));
+    good(render(
+        &folder,
+        &["triangle.obj", "-o", "a.exr", "-o", "a.PNG", "--spp", "16"],
+    ));
     let (width, pixels) = read_exr(&folder.path().join("a.exr")).unwrap();
     let image = image::ImageReader::open(Path::new(folder.path()).join("a.PNG")).unwrap();
-    let image = image.with_guessed_format().unwrap().decode().unwrap().to_rgb8();
+    let image = image
+        .with_guessed_format()
+        .unwrap()
+        .decode()
+        .unwrap()
+        .to_rgb8();
     for (x, y, pixel) in image.enumerate_pixels() {
         let linear = f64::from(pixels[y as usize * width + x as usize][1]).clamp(0.0, 1.0);
-        let encoded = if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+        let encoded = if linear <= 0.0031308 {
+            12.92 * linear
+        } else {
+            1.055 * linear.powf(1.0 / 2.4) - 0.055
+        };
         assert!((encoded * 255.0 - f64::from(pixel.0[1])).abs() <= 0.501);
     }
 }

@@ -12,7 +12,15 @@ use residual_tests::{Look, Prepared, fixtures};
 const SIZE: [u32; 2] = [61, 43];
 
 fn room(sampler: AnySampler) -> Plan {
-    plan(&fixtures::room(), &PlanOptions { size: SIZE, sampler, ..PlanOptions::default() }).unwrap()
+    plan(
+        &fixtures::room(),
+        &PlanOptions {
+            size: SIZE,
+            sampler,
+            ..PlanOptions::default()
+        },
+    )
+    .unwrap()
 }
 
 #[test]
@@ -24,9 +32,16 @@ fn tiles_and_threads_do_not_show() {
         let expected = prepared.interpret(&look);
         for tile_size in [1, 7, 16, 43, 1000] {
             for threads in [1, 2, 3] {
-                let film = prepared.interpret(&Look { tile_size: Some(tile_size), threads, ..look });
+                let film = prepared.interpret(&Look {
+                    tile_size: Some(tile_size),
+                    threads,
+                    ..look
+                });
                 let difference = first_difference(&expected.image(), &film.image());
-                assert_eq!(difference, None, "{sampler:?}, tiles of {tile_size}, {threads} threads");
+                assert_eq!(
+                    difference, None,
+                    "{sampler:?}, tiles of {tile_size}, {threads} threads"
+                );
             }
         }
     }
@@ -41,14 +56,20 @@ fn seeds_and_samplers_show_and_agree_in_the_mean() {
     let independent = room(AnySampler::Independent);
     let others = [
         prepared.interpret(&Look { seed: 1, ..look }),
-        prepared.interpret(&Look { seed: u32::MAX, ..look }),
+        prepared.interpret(&Look {
+            seed: u32::MAX,
+            ..look
+        }),
         Prepared::new(&independent, LaneCount::native()).interpret(&look),
     ];
     for other in &others {
         assert!(first_difference(&expected, &other.image()).is_some());
         let (a, b) = (mean(&expected), mean(&other.image()));
         for channel in 0..3 {
-            assert!((a[channel] / b[channel] - 1.0).abs() < 0.02, "{a:?} and {b:?}");
+            assert!(
+                (a[channel] / b[channel] - 1.0).abs() < 0.02,
+                "{a:?} and {b:?}"
+            );
         }
     }
 }
@@ -61,7 +82,10 @@ fn the_first_samples_are_those_of_a_shorter_render() {
     let [one, two] = [1, 2].map(|samples| prepared.interpret(&Look::new(SIZE, samples)).image());
     // Twice the mean of two, less the first, is the second; it must be a picture of its own.
     assert!(first_difference(&one, &two).is_some());
-    let second = one.iter().zip(&two).flat_map(|(one, two)| [0, 1, 2].map(|k| 2.0 * two[k] - one[k]));
+    let second = one
+        .iter()
+        .zip(&two)
+        .flat_map(|(one, two)| [0, 1, 2].map(|k| 2.0 * two[k] - one[k]));
     assert!(second.into_iter().all(|c| c > -1e-4));
 }
 
@@ -69,11 +93,24 @@ fn the_first_samples_are_those_of_a_shorter_render() {
 fn the_same_command_writes_the_same_pixels() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("quad.obj");
-    std::fs::write(&scene, "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n").unwrap();
+    std::fs::write(
+        &scene,
+        "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n",
+    )
+    .unwrap();
     let render = |name: &str, more: &[&str]| {
         let output = folder.path().join(name);
         let status = Command::new(env!("CARGO_BIN_EXE_residual-tests"))
-            .args(["render", "--quiet", "--size", "70x40", "--spp", "6", "--tier", "interpreted"])
+            .args([
+                "render",
+                "--quiet",
+                "--size",
+                "70x40",
+                "--spp",
+                "6",
+                "--tier",
+                "interpreted",
+            ])
             .args(more)
             .args([Path::new("-o"), &output, &scene])
             .status()
@@ -85,8 +122,16 @@ fn the_same_command_writes_the_same_pixels() {
     };
     let first = render("a.exr", &[]);
     assert!(mean(&first)[0] > 0.1);
-    for (name, more) in [("b.exr", &[][..]), ("c.exr", &["--threads", "1"]), ("d.exr", &["--threads", "2", "--lanes", "4"])] {
-        assert_eq!(first_difference(&first, &render(name, more)), None, "{more:?}");
+    for (name, more) in [
+        ("b.exr", &[][..]),
+        ("c.exr", &["--threads", "1"]),
+        ("d.exr", &["--threads", "2", "--lanes", "4"]),
+    ] {
+        assert_eq!(
+            first_difference(&first, &render(name, more)),
+            None,
+            "{more:?}"
+        );
     }
     assert!(first_difference(&first, &render("e.exr", &["--seed", "1"])).is_some());
 }

@@ -24,22 +24,33 @@ enum Outcome {
 }
 
 /// Runs a job on a thread of its own, for a limited time.
-fn observe(job: impl FnOnce() -> Outcome + Send + 'static) -> Outcome {
+fn observe(limit: Duration, job: impl FnOnce() -> Outcome + Send + 'static) -> Outcome {
     let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {
         let outcome = catch_unwind(AssertUnwindSafe(job)).unwrap_or(Outcome::Panicked);
         let _ = sender.send(outcome);
     });
-    receiver.recv_timeout(TIME_LIMIT).unwrap_or(Outcome::TimedOut)
+    receiver.recv_timeout(limit).unwrap_or(Outcome::TimedOut)
 }
 
 fn render(path: &Path) -> Outcome {
-    let Ok(scene) = read_scene(path, None) else { return Outcome::Refused };
-    let size = [16, 16];
-    let Ok(plan) = plan(&scene, &PlanOptions { size, ..PlanOptions::default() }) else {
+    let Ok(scene) = read_scene(path, None) else {
         return Outcome::Refused;
     };
-    let look = Look { threads: 1, ..Look::new(size, 1) };
+    let size = [16, 16];
+    let Ok(plan) = plan(
+        &scene,
+        &PlanOptions {
+            size,
+            ..PlanOptions::default()
+        },
+    ) else {
+        return Outcome::Refused;
+    };
+    let look = Look {
+        threads: 1,
+        ..Look::new(size, 1)
+    };
     let film = Prepared::new(&plan, LaneCount::native()).interpret(&look);
     match film.invalid_samples() {
         0 => Outcome::Image,
@@ -58,7 +69,7 @@ fn every_malformed_file_ends_in_an_image_or_an_error() {
     for path in files {
         let start = Instant::now();
         let job = path.clone();
-        match observe(move || render(&job)) {
+        match observe(TIME_LIMIT, move || render(&job)) {
             Outcome::Image => images += 1,
             Outcome::Refused => refused += 1,
             fault => faults.push((path.clone(), fault)),
@@ -69,7 +80,10 @@ fn every_malformed_file_ends_in_an_image_or_an_error() {
     }
     println!("{images} rendered, {refused} refused");
     assert!(faults.is_empty(), "{faults:#?}");
-    assert!(images > 20 && refused > 20, "the files are not what they were");
+    assert!(
+        images > 20 && refused > 20,
+        "the files are not what they were"
+    );
 }
 
 /// A sample of the files through the command line, in 2 GiB of address space: an allocation beyond it would abort.
@@ -80,18 +94,36 @@ fn memory_stays_bounded() {
     let folder = tempfile::tempdir().unwrap();
     for path in files.iter().step_by(6) {
         let output = limited(2 << 20)
-            .args(["render", "--quiet", "--size", "16x16", "--spp", "1", "--threads", "1"])
+            .args([
+                "render",
+                "--quiet",
+                "--size",
+                "16x16",
+                "--spp",
+                "1",
+                "--threads",
+                "1",
+            ])
             .args(["--tier", "interpreted", "-o"])
             .arg(folder.path().join("image.png"))
             .arg(path)
             .output()
             .unwrap();
         let message = String::from_utf8_lossy(&output.stderr);
-        assert!(matches!(output.status.code(), Some(0 | 1)), "{}: {}\n{message}", path.display(), output.status);
+        assert!(
+            matches!(output.status.code(), Some(0 | 1)),
+            "{}: {}\n{message}",
+            path.display(),
+            output.status
+        );
         if output.status.code() == Some(1) {
             assert!(message.contains("error: "), "{}: {message}", path.display());
         }
-        assert!(!message.contains("panicked"), "{}: {message}", path.display());
+        assert!(
+            !message.contains("panicked"),
+            "{}: {message}",
+            path.display()
+        );
     }
 }
 
@@ -104,23 +136,47 @@ fn limited(kib: u64) -> Command {
     command
 }
 
-/// The watch sees panics and, given less memory than it needs, the limit kills the program.
+/// The watch sees panics and slow jobs; given less memory than it needs, the limit kills the program.
 #[test]
 fn faults_are_seen() {
-    assert_eq!(observe(|| panic!("on purpose")), Outcome::Panicked);
-    assert_eq!(observe(|| Outcome::InvalidSamples(1)), Outcome::InvalidSamples(1));
+    assert_eq!(
+        observe(TIME_LIMIT, || panic!("on purpose")),
+        Outcome::Panicked
+    );
+    assert_eq!(
+        observe(TIME_LIMIT, || Outcome::InvalidSamples(1)),
+        Outcome::InvalidSamples(1)
+    );
+    let slow = || {
+        std::thread::sleep(Duration::from_secs(1));
+        Outcome::Image
+    };
+    assert_eq!(observe(Duration::from_millis(10), slow), Outcome::TimedOut);
     #[cfg(unix)]
     {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("a.obj");
         std::fs::write(&scene, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
         let output = limited(256 << 10)
-            .args(["render", "--quiet", "--size", "30000x30000", "--spp", "1", "--threads", "1"])
+            .args([
+                "render",
+                "--quiet",
+                "--size",
+                "30000x30000",
+                "--spp",
+                "1",
+                "--threads",
+                "1",
+            ])
             .args(["--tier", "interpreted", "-o"])
             .arg(folder.path().join("image.png"))
             .arg(&scene)
             .output()
             .unwrap();
-        assert!(!matches!(output.status.code(), Some(0 | 1)), "{}", output.status);
+        assert!(
+            !matches!(output.status.code(), Some(0 | 1)),
+            "{}",
+            output.status
+        );
     }
 }

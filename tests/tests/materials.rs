@@ -9,7 +9,10 @@ use residual_tests::{Look, Prepared, read_scene, scene_files, scenes};
 /// Files that require what is not supported, and the extension that their error names.
 const REFUSED: &[(&str, &str)] = &[
     ("BoxMeshopt.glb", "EXT_meshopt_compression"),
-    ("14_emission_strength.gltf", "KHR_materials_pbrSpecularGlossiness"),
+    (
+        "14_emission_strength.gltf",
+        "KHR_materials_pbrSpecularGlossiness",
+    ),
 ];
 
 #[test]
@@ -30,11 +33,21 @@ fn every_model_renders_or_names_its_extension() {
             (Ok(_), Some(_)) => panic!("{name} is not refused any more; adapt this test"),
             (Err(error), None) => panic!("{error}"),
         };
-        let plan = plan(&scene, &PlanOptions { size, ..PlanOptions::default() }).unwrap();
+        let plan = plan(
+            &scene,
+            &PlanOptions {
+                size,
+                ..PlanOptions::default()
+            },
+        )
+        .unwrap();
         let film = Prepared::new(&plan, LaneCount::native()).interpret(&Look::new(size, 4));
         assert_eq!(film.invalid_samples(), 0, "{name}");
         let mean = mean(&film.image());
-        assert!(mean.iter().all(|c| c.is_finite() && *c > 0.0), "{name}: mean {mean:?}");
+        assert!(
+            mean.iter().all(|c| c.is_finite() && *c > 0.0),
+            "{name}: mean {mean:?}"
+        );
         println!("{name}: mean {mean:.3?}");
         rendered += 1;
     }

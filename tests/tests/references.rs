@@ -20,18 +20,62 @@ struct Reference {
 }
 
 const REFERENCES: &[Reference] = &[
-    Reference { scene: "cornell-generated.glb", folder: "interiors", samples: 48, tolerance: 0.008 },
-    Reference { scene: "cornell-box.glb", folder: "interiors", samples: 48, tolerance: 0.006 },
-    Reference { scene: "room.glb", folder: "bench", samples: 24, tolerance: 0.015 },
-    Reference { scene: "living-room-grey-white.glb", folder: "interiors", samples: 32, tolerance: 0.02 },
-    Reference { scene: "bedroom.glb", folder: "interiors", samples: 24, tolerance: 0.025 },
-    Reference { scene: "staircase2-modern-hall.glb", folder: "interiors", samples: 48, tolerance: 0.05 },
-    Reference { scene: "teapot-full.glb", folder: "interiors", samples: 24, tolerance: 0.03 },
-    Reference { scene: "sponza-crytek.glb", folder: "bench", samples: 96, tolerance: 0.15 },
+    Reference {
+        scene: "cornell-generated.glb",
+        folder: "interiors",
+        samples: 48,
+        tolerance: 0.008,
+    },
+    Reference {
+        scene: "cornell-box.glb",
+        folder: "interiors",
+        samples: 48,
+        tolerance: 0.006,
+    },
+    Reference {
+        scene: "room.glb",
+        folder: "bench",
+        samples: 24,
+        tolerance: 0.015,
+    },
+    Reference {
+        scene: "living-room-grey-white.glb",
+        folder: "interiors",
+        samples: 32,
+        tolerance: 0.02,
+    },
+    Reference {
+        scene: "bedroom.glb",
+        folder: "interiors",
+        samples: 24,
+        tolerance: 0.025,
+    },
+    Reference {
+        scene: "staircase2-modern-hall.glb",
+        folder: "interiors",
+        samples: 48,
+        tolerance: 0.05,
+    },
+    Reference {
+        scene: "teapot-full.glb",
+        folder: "interiors",
+        samples: 24,
+        tolerance: 0.03,
+    },
+    Reference {
+        scene: "sponza-crytek.glb",
+        folder: "bench",
+        samples: 96,
+        tolerance: 0.15,
+    },
 ];
 
 fn vector(entry: &Value, name: &str) -> [f32; 3] {
-    let numbers = entry[name].as_array().unwrap().iter().map(|n| n.as_f64().unwrap() as f32);
+    let numbers = entry[name]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|n| n.as_f64().unwrap() as f32);
     numbers.collect::<Vec<_>>().try_into().unwrap()
 }
 
@@ -40,14 +84,29 @@ fn means_agree_with_cycles() {
     let Some(scenes) = scenes() else { return };
     let folder = scenes.join("refs/cycles");
     let index = std::fs::read_to_string(folder.join("index.jsonl")).unwrap();
-    let entries: Vec<Value> = index.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let entries: Vec<Value> = index
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
     let mut off = Vec::new();
-    println!("{:<32} {:>4} {:>8} {:>8} {:>8}  tolerance", "scene", "spp", "red", "green", "blue");
+    println!(
+        "{:<32} {:>4} {:>8} {:>8} {:>8}  tolerance",
+        "scene", "spp", "red", "green", "blue"
+    );
     for reference in REFERENCES {
-        let entry = entries.iter().find(|entry| entry["scene"] == reference.scene).unwrap();
+        let entry = entries
+            .iter()
+            .find(|entry| entry["scene"] == reference.scene)
+            .unwrap();
         let size = ["width", "height"].map(|name| entry[name].as_u64().unwrap() as u32);
-        let environment = entry["env"].as_str().map(|file| scenes.join("env").join(file));
-        let scene = read_scene(&scenes.join(reference.folder).join(reference.scene), environment).unwrap();
+        let environment = entry["env"]
+            .as_str()
+            .map(|file| scenes.join("env").join(file));
+        let scene = read_scene(
+            &scenes.join(reference.folder).join(reference.scene),
+            environment,
+        )
+        .unwrap();
         let view = View {
             eye: Some(vector(entry, "eye")),
             dir: Some(vector(entry, "dir")),
@@ -61,17 +120,35 @@ fn means_agree_with_cycles() {
             ..PlanOptions::default()
         };
         let plan = plan(&scene, &options).unwrap();
-        let look = Look { max_depth: entry["depth"].as_u64().unwrap() as u32, ..Look::new(size, reference.samples) };
+        let look = Look {
+            max_depth: entry["depth"].as_u64().unwrap() as u32,
+            ..Look::new(size, reference.samples)
+        };
         let film = Prepared::new(&plan, LaneCount::native()).interpret(&look);
         assert_eq!(film.invalid_samples(), 0, "{}", reference.scene);
 
         let file = folder.join(reference.scene).with_extension("exr");
         let theirs = mean(&read_exr(&file).unwrap().1);
-        let stated = entry["mean"].as_array().unwrap().iter().map(|c| c.as_f64().unwrap());
-        assert!(stated.zip(theirs).all(|(stated, read)| (stated - read).abs() < 1e-4), "{}", reference.scene);
+        let stated = entry["mean"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|c| c.as_f64().unwrap());
+        assert!(
+            stated
+                .zip(theirs)
+                .all(|(stated, read)| (stated - read).abs() < 1e-4),
+            "{}",
+            reference.scene
+        );
         let ratios = ratios(film.mean(), theirs);
         let [r, g, b] = ratios;
-        let Reference { scene, samples, tolerance, .. } = reference;
+        let Reference {
+            scene,
+            samples,
+            tolerance,
+            ..
+        } = reference;
         println!("{scene:<32} {samples:>4} {r:>8.4} {g:>8.4} {b:>8.4}  {tolerance}");
         if !within(ratios, *tolerance) {
             off.push((reference.scene, ratios));

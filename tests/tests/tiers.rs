@@ -15,7 +15,15 @@ use residual_tests::{Look, Prepared, fixtures, read_scene, scenes};
 const SIZE: [u32; 2] = [75, 52];
 
 fn planned(scene: &SceneDesc, binding: Binding) -> Plan {
-    plan(scene, &PlanOptions { size: SIZE, binding, ..PlanOptions::default() }).unwrap()
+    plan(
+        scene,
+        &PlanOptions {
+            size: SIZE,
+            binding,
+            ..PlanOptions::default()
+        },
+    )
+    .unwrap()
 }
 
 /// Fails unless the film is the expected one, bit for bit.
@@ -29,28 +37,66 @@ fn expect_same(what: &str, expected: &Film, film: &Film) {
 fn check(scene: &SceneDesc, samples: u32, compiled: &[LaneCount]) {
     let plan = planned(scene, Binding::Structure);
     let two_threads = Look::new(SIZE, samples);
-    let looks = [Look { threads: 1, ..two_threads }, two_threads];
+    let looks = [
+        Look {
+            threads: 1,
+            ..two_threads
+        },
+        two_threads,
+    ];
     let expected = Prepared::new(&plan, LaneCount::One).interpret(&looks[0]);
     assert_eq!(expected.invalid_samples(), 0);
     // What is compared is a picture: black or uniform ones would agree for nothing.
-    let shades: BTreeSet<_> = expected.image().iter().map(|rgb| rgb.map(f32::to_bits)).collect();
-    assert!(shades.len() > 50 || scene.instances.len() < 2, "{}: {} shades", scene.name, shades.len());
+    let shades: BTreeSet<_> = expected
+        .image()
+        .iter()
+        .map(|rgb| rgb.map(f32::to_bits))
+        .collect();
+    assert!(
+        shades.len() > 50 || scene.instances.len() < 2,
+        "{}: {} shades",
+        scene.name,
+        shades.len()
+    );
     assert!(mean(&expected.image()).iter().all(|c| *c > 0.0));
 
     for lanes in LaneCount::ALL {
         let prepared = Prepared::new(&plan, lanes);
-        let renderer = compiled.contains(&lanes).then(|| xtask::compile::compile(&plan, lanes).unwrap());
+        let renderer = compiled
+            .contains(&lanes)
+            .then(|| xtask::compile::compile(&plan, lanes).unwrap());
         for look in looks {
             let what = format!("{}, {lanes} lanes, {} threads", scene.name, look.threads);
-            expect_same(&format!("{what}, interpreted"), &expected, &prepared.interpret(&look));
+            expect_same(
+                &format!("{what}, interpreted"),
+                &expected,
+                &prepared.interpret(&look),
+            );
             if let Some(renderer) = &renderer {
-                expect_same(&format!("{what}, specialised"), &expected, &prepared.render(renderer, &look));
+                expect_same(
+                    &format!("{what}, specialised"),
+                    &expected,
+                    &prepared.render(renderer, &look),
+                );
             }
         }
     }
     let constants = planned(scene, Binding::Constants);
     let film = Prepared::new(&constants, LaneCount::Eight).interpret(&two_threads);
     expect_same(&format!("{}, constants", scene.name), &expected, &film);
+}
+
+#[test]
+#[should_panic(expected = "of 3900 pixels")]
+fn another_film_is_noticed() {
+    let plan = planned(&fixtures::triangle(), Binding::Structure);
+    let prepared = Prepared::new(&plan, LaneCount::Eight);
+    let look = Look::new(SIZE, 2);
+    expect_same(
+        "seeds",
+        &prepared.interpret(&look),
+        &prepared.interpret(&Look { seed: 1, ..look }),
+    );
 }
 
 const BOTH: &[LaneCount] = &[LaneCount::Eight, LaneCount::Sixteen];
@@ -73,7 +119,14 @@ fn lights_fixture() {
 #[test]
 fn one_triangle_and_nothing() {
     check(&fixtures::triangle(), 4, &[LaneCount::Eight]);
-    check(&SceneDesc { name: "nothing".to_owned(), ..SceneDesc::default() }, 2, &[LaneCount::Sixteen]);
+    check(
+        &SceneDesc {
+            name: "nothing".to_owned(),
+            ..SceneDesc::default()
+        },
+        2,
+        &[LaneCount::Sixteen],
+    );
 }
 
 fn check_shared(file: &str, compiled: &[LaneCount]) {
@@ -93,26 +146,39 @@ fn teapot() {
 
 #[test]
 fn living_room() {
-    check_shared("interiors/living-room-grey-white.glb", &[LaneCount::native()]);
+    check_shared(
+        "interiors/living-room-grey-white.glb",
+        &[LaneCount::native()],
+    );
 }
 
 #[test]
 fn alpha_blend() {
-    check_shared("materials/AlphaBlendModeTest/AlphaBlendModeTest.gltf", &[LaneCount::native()]);
+    check_shared(
+        "materials/AlphaBlendModeTest/AlphaBlendModeTest.gltf",
+        &[LaneCount::native()],
+    );
 }
 
 #[test]
 fn texture_settings() {
-    check_shared("materials/TextureSettingsTest/TextureSettingsTest.gltf", &[]);
+    check_shared(
+        "materials/TextureSettingsTest/TextureSettingsTest.gltf",
+        &[],
+    );
 }
 
 /// An effect that no fixture calls for would be compiled by no test.
 #[test]
 fn fixtures_call_for_every_effect() {
     let scenes = [fixtures::room(), fixtures::textures(), fixtures::lights()];
-    let effects: Vec<_> =
-        scenes.iter().map(|scene| Effects::of(&planned(scene, Binding::Structure))).collect();
-    let missing: Vec<_> =
-        Effect::ALL.iter().filter(|effect| effects.iter().all(|e| e.reasons(**effect).is_empty())).collect();
+    let effects: Vec<_> = scenes
+        .iter()
+        .map(|scene| Effects::of(&planned(scene, Binding::Structure)))
+        .collect();
+    let missing: Vec<_> = Effect::ALL
+        .iter()
+        .filter(|effect| effects.iter().all(|e| e.reasons(**effect).is_empty()))
+        .collect();
     assert!(missing.is_empty(), "no fixture calls for {missing:?}");
 }
