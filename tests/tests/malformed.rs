@@ -24,15 +24,13 @@ enum Outcome {
 }
 
 /// Runs a job on a thread of its own, for a limited time.
-fn observe(job: impl FnOnce() -> Outcome + Send + 'static) -> Outcome {
+fn observe(limit: Duration, job: impl FnOnce() -> Outcome + Send + 'static) -> Outcome {
     let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {
         let outcome = catch_unwind(AssertUnwindSafe(job)).unwrap_or(Outcome::Panicked);
         let _ = sender.send(outcome);
     });
-    receiver
-        .recv_timeout(TIME_LIMIT)
-        .unwrap_or(Outcome::TimedOut)
+    receiver.recv_timeout(limit).unwrap_or(Outcome::TimedOut)
 }
 
 fn render(path: &Path) -> Outcome {
@@ -71,7 +69,7 @@ fn every_malformed_file_ends_in_an_image_or_an_error() {
     for path in files {
         let start = Instant::now();
         let job = path.clone();
-        match observe(move || render(&job)) {
+        match observe(TIME_LIMIT, move || render(&job)) {
             Outcome::Image => images += 1,
             Outcome::Refused => refused += 1,
             fault => faults.push((path.clone(), fault)),
@@ -138,14 +136,22 @@ fn limited(kib: u64) -> Command {
     command
 }
 
-/// The watch sees panics and, given less memory than it needs, the limit kills the program.
+/// The watch sees panics and slow jobs; given less memory than it needs, the limit kills the program.
 #[test]
 fn faults_are_seen() {
-    assert_eq!(observe(|| panic!("on purpose")), Outcome::Panicked);
     assert_eq!(
-        observe(|| Outcome::InvalidSamples(1)),
+        observe(TIME_LIMIT, || panic!("on purpose")),
+        Outcome::Panicked
+    );
+    assert_eq!(
+        observe(TIME_LIMIT, || Outcome::InvalidSamples(1)),
         Outcome::InvalidSamples(1)
     );
+    let slow = || {
+        std::thread::sleep(Duration::from_secs(1));
+        Outcome::Image
+    };
+    assert_eq!(observe(Duration::from_millis(10), slow), Outcome::TimedOut);
     #[cfg(unix)]
     {
         let folder = tempfile::tempdir().unwrap();

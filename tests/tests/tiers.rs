@@ -86,6 +86,19 @@ fn check(scene: &SceneDesc, samples: u32, compiled: &[LaneCount]) {
     expect_same(&format!("{}, constants", scene.name), &expected, &film);
 }
 
+#[test]
+#[should_panic(expected = "of 3900 pixels")]
+fn another_film_is_noticed() {
+    let plan = planned(&fixtures::triangle(), Binding::Structure);
+    let prepared = Prepared::new(&plan, LaneCount::Eight);
+    let look = Look::new(SIZE, 2);
+    expect_same(
+        "seeds",
+        &prepared.interpret(&look),
+        &prepared.interpret(&Look { seed: 1, ..look }),
+    );
+}
+
 const BOTH: &[LaneCount] = &[LaneCount::Eight, LaneCount::Sixteen];
 
 #[test]
