@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """Writes the scenes of this directory: `python3 scenes/generate.py`. Standard library only.
 
+With `--check` it writes nothing here and fails where a file is not what it would write. (Pictures are left out of the
+check: their bytes depend on the version of zlib.)
+
 The same bytes every time: no time stamps, no random state; coordinates are rounded to float32.
 Conventions are glTF's: metres, +Y up, a front is counter-clockwise; `Mesh.check` asserts the last.
 """
@@ -9,6 +12,8 @@ import base64
 import json
 import math
 import struct
+import sys
+import tempfile
 import zlib
 from pathlib import Path
 
@@ -593,8 +598,27 @@ def textured():
         "KHR_materials_transmission", "KHR_materials_volume", "KHR_texture_transform"])
 
 
-if __name__ == "__main__":
+def write_all():
     cornell = cornell_meshes()
     cornell_gltf(cornell)
     cornell_obj(cornell)
     textured()
+
+
+def check():
+    """Writes everything elsewhere and names the files here that differ."""
+    global HERE
+    committed = HERE
+    with tempfile.TemporaryDirectory() as directory:
+        HERE = Path(directory)
+        (HERE / "textures").mkdir()
+        write_all()
+        written = [path for path in HERE.rglob("*") if path.is_file() and path.suffix != ".png"]
+        stale = [path.name for path in written
+                 if (committed / path.relative_to(HERE)).read_bytes() != path.read_bytes()]
+    if stale:
+        sys.exit(f"not what scenes/generate.py writes: {', '.join(sorted(stale))}; run python3 scenes/generate.py")
+
+
+if __name__ == "__main__":
+    check() if "--check" in sys.argv[1:] else write_all()

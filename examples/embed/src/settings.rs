@@ -3,9 +3,13 @@
 use residual_scenegen::plan::PlanOptions;
 
 /// The scene.
-pub(crate) const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/cornell-box.gltf");
+pub(crate) const SCENE: &str =
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/cornell-box.gltf");
 
 /// How it is planned.
 pub(crate) fn plan_options() -> PlanOptions {
-    PlanOptions { size: [512, 512], ..PlanOptions::default() }
+    PlanOptions {
+        size: [512, 512],
+        ..PlanOptions::default()
+    }
 }

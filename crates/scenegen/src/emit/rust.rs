@@ -29,9 +29,19 @@ fn write(out: &mut String, plan: &Plan, lanes: &str) -> fmt::Result {
     )?;
     out.push_str(HEADER);
     writeln!(out, "\nimpl Scene<'_> {{")?;
-    writeln!(out, "    /// The fingerprint of the structure: the plan whose data are rendered must have the same.")?;
-    writeln!(out, "    #[allow(dead_code, reason = \"read by programs that embed the renderer\")]")?;
-    writeln!(out, "    pub const STRUCTURE: u64 = {:#018x};\n}}", fingerprint(structure))?;
+    writeln!(
+        out,
+        "    /// The fingerprint of the structure: the plan whose data are rendered must have the same."
+    )?;
+    writeln!(
+        out,
+        "    #[allow(dead_code, reason = \"read by programs that embed the renderer\")]"
+    )?;
+    writeln!(
+        out,
+        "    pub const STRUCTURE: u64 = {:#018x};\n}}",
+        fingerprint(structure)
+    )?;
     scene(out, plan)?;
     hit_filter(out, structure.culling, &structure.programs)?;
     for (number, program) in structure.programs.iter().enumerate() {

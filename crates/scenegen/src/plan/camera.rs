@@ -20,7 +20,7 @@ pub enum CameraChoice {
     View(View),
 }
 
-/// A pinhole camera given by the user. What is `None` is taken from the default camera.
+/// A pinhole camera given by the user. What is `None` is taken from the default camera, but for `up`, which is +Y.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct View {
     /// Eye.
@@ -141,7 +141,8 @@ pub(super) fn place(
         CameraChoice::Named(wanted) => named(scene, wanted)?.clone(),
         CameraChoice::View(view) => {
             let default = default();
-            let up = view.up.map_or(default.rotation * Vec3::Y, Vec3::from);
+            // A direction given without "up" means an upright camera, whatever the default's tilt.
+            let up = view.up.map_or(Vec3::Y, Vec3::from);
             let dir = view.dir.map_or(default.rotation * Vec3::NEG_Z, Vec3::from);
             CameraDesc {
                 name: "given".to_owned(),
