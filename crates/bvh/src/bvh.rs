@@ -15,7 +15,8 @@ pub(crate) const MAX_DEPTH: usize = 64;
 pub struct Node<const N: usize> {
     /// `[lo.x, hi.x, lo.y, hi.y, lo.z, hi.z]`, each `[child]`; an unused slot has the empty box.
     pub bounds: [[f32; N]; 6],
-    /// What each box holds: see [`Child`].
+    /// What each box holds: the number of a node; or, with the high bit set, a leaf of (bits 27 to 30) packets from the
+    /// packet (lower 27 bits) on. A leaf of no packets is an unused slot.
     pub children: [u32; N],
 }
 
