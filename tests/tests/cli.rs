@@ -45,7 +45,8 @@ fn run(folder: &TempDir, args: &[&str]) -> Output {
 fn render(folder: &TempDir, args: &[&str]) -> Output {
     let mut all = vec!["render", "--tier", "interpreted", "--threads", "1"];
     for (name, value) in [("--size", "16x12"), ("--spp", "2")] {
-        if !args.contains(&name) && !(name == "--spp" && args.contains(&"--time")) {
+        let timed = name == "--spp" && args.contains(&"--time");
+        if !timed && !args.contains(&name) {
             all.extend([name, value]);
         }
     }
