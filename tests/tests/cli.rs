@@ -45,8 +45,8 @@ fn run(folder: &TempDir, args: &[&str]) -> Output {
 fn render(folder: &TempDir, args: &[&str]) -> Output {
     let mut all = vec!["render", "--tier", "interpreted", "--threads", "1"];
     for (name, value) in [("--size", "16x12"), ("--spp", "2")] {
-        let replaced = name == "--spp" && args.contains(&"--time");
-        if !(replaced || args.contains(&name)) {
+        let timed = name == "--spp" && args.contains(&"--time");
+        if !timed && !args.contains(&name) {
             all.extend([name, value]);
         }
     }
@@ -152,24 +152,14 @@ fn failed_jobs_end_in_status_1_and_say_why() {
     }
 }
 
-/// The job would take the best part of an hour, were it begun.
+/// Had rendering begun, the good file, which comes first, would be there.
 #[test]
 fn outputs_that_cannot_be_written_are_refused_before_rendering() {
     let folder = workplace();
     fs::create_dir(folder.path().join("folder.png")).unwrap();
     let refuse = |output: &str, texts: &[&str]| {
-        let start = Instant::now();
-        let args = [
-            "triangle.obj",
-            "--time",
-            "2000s",
-            "-o",
-            "good.png",
-            "-o",
-            output,
-        ];
+        let args = ["triangle.obj", "-o", "good.png", "-o", output];
         fails(&render(&folder, &args), texts);
-        assert!(start.elapsed() < Duration::from_secs(20));
         assert!(!folder.path().join("good.png").exists());
     };
     refuse("nowhere/a.png", &["nowhere", "does not exist"]);
