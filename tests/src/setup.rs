@@ -106,7 +106,6 @@ impl<'a> Prepared<'a> {
             time: None,
             max_depth: look.max_depth,
             seed: look.seed,
-            threads: look.threads,
         };
         let view = SceneView {
             buffers: self.plan.data.buffers(),

@@ -119,7 +119,6 @@ fn render(
         time: None,
         max_depth,
         seed: 1,
-        threads: 2,
     };
     let (film, _) = device.render(|| &interpreter, &view, &options, |_| ());
     assert_eq!(

@@ -17,9 +17,10 @@ use residual_render::film::Film;
 use residual_scenegen::plan::Plan;
 
 use crate::args::{RenderArgs, StatsArg, TierArg};
+use crate::compile::Compiler;
 use crate::output::{self, Metadata};
+use crate::scene;
 use crate::stats::{Stages, Statistics, cpu_seconds};
-use crate::{compile, scene};
 
 const DEFAULT_SAMPLES: u32 = 64;
 
@@ -35,11 +36,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         time: args.time,
         max_depth: args.max_depth,
         seed: args.seed,
-        threads: args.threads,
     };
     let bar = progress_bar(args, &options);
 
     let interpreter = Interpreter::new(plan.structure.clone(), lanes);
+    let compiler = Compiler::default();
     let compiled = OnceLock::new();
     let compiled_from = AtomicU32::new(u32::MAX);
     let samples_done = AtomicU32::new(0);
@@ -48,10 +49,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let mut render_cpu = None;
     std::thread::scope(|scope| {
         // Compilation runs beside the building of the hierarchy and, with `auto`, beside rendering.
-        let compilation = (args.tier != TierArg::Interpreted)
-            .then(|| scope.spawn(|| compiled.get_or_init(|| Compilation::run(&plan, lanes))));
+        let compilation = (args.tier != TierArg::Interpreted).then(|| {
+            scope.spawn(|| compiled.get_or_init(|| Compilation::run(&compiler, &plan, lanes)))
+        });
         let bvh_start = Instant::now();
-        let bvh = OwnedBvh::build(&plan.data, lanes, BuildQuality::Best);
+        let bvh = OwnedBvh::build(&plan.data, lanes, quality(plan.data.triangle_count()));
         bvh_time = bvh_start.elapsed();
         if args.tier == TierArg::Specialized
             && let Some(compilation) = compilation
@@ -95,7 +97,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             .zip(cpu_seconds())
             .map(|(before, after)| after - before);
         bar.finish_and_clear();
-        // The image is ready: it is written before the compiler, if it still runs, is waited for.
+        // A compiler that still runs comes too late.
+        compiler.give_up();
         let (film, report) = done.as_ref().expect("just rendered");
         let metadata = Metadata {
             scene: plan.name.clone(),
@@ -121,9 +124,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             result: Err(error),
             time,
         }) => {
-            eprintln!(
-                "warning: the renderer could not be compiled; it was interpreted instead: {error:#}"
-            );
+            if !compiler.was_given_up() {
+                eprintln!(
+                    "warning: the renderer could not be compiled; it was interpreted instead: {error:#}"
+                );
+            }
             ("interpreted", *time)
         }
         None => ("interpreted", Duration::ZERO),
@@ -161,6 +166,15 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     Ok(())
 }
 
+/// The better hierarchies take 13 s for a million triangles on one core; beyond that, images come sooner from plain ones.
+fn quality(triangles: usize) -> BuildQuality {
+    match triangles {
+        0..=1_000_000 => BuildQuality::Best,
+        1_000_001..=3_000_000 => BuildQuality::Medium,
+        _ => BuildQuality::Fast,
+    }
+}
+
 /// A compiled renderer, or why there is none, and how long that took.
 struct Compilation {
     result: Result<LoadedRenderer>,
@@ -168,9 +182,9 @@ struct Compilation {
 }
 
 impl Compilation {
-    fn run(plan: &Plan, lanes: LaneCount) -> Self {
+    fn run(compiler: &Compiler, plan: &Plan, lanes: LaneCount) -> Self {
         let start = Instant::now();
-        let result = compile::compile(plan, lanes);
+        let result = compiler.compile(plan, lanes);
         Self {
             result,
             time: start.elapsed(),

@@ -28,8 +28,6 @@ pub struct RenderOptions {
     pub max_depth: u32,
     /// Seed of the random numbers.
     pub seed: u32,
-    /// Threads; 0 is one for each processor.
-    pub threads: usize,
 }
 
 /// How far a render has come.

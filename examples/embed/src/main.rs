@@ -41,9 +41,8 @@ fn main() -> Result<()> {
         time: None,
         max_depth: 8,
         seed: 0,
-        threads: 0,
     };
-    let device = CpuDevice::new(job.threads)?;
+    let device = CpuDevice::new(0)?;
     let (film, report) = device.render(|| &Compiled, &view, &job, |_| {});
 
     let pixels = film

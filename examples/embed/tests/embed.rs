@@ -43,7 +43,6 @@ fn render(plan: &Plan, renderer: &dyn TileRenderer, threads: usize) -> Film {
         time: None,
         max_depth: 8,
         seed: 7,
-        threads,
     };
     CpuDevice::new(threads)
         .unwrap()

@@ -3,14 +3,15 @@
 use std::fmt::{self, Write as _};
 
 use residual_render::alpha::AlphaTest;
-use residual_render::program::{
-    AlphaNode, BsdfNode, ColorNode, Culling, ImageNode, LightNode, Program, ScalarNode, SourceNode,
-};
+use residual_render::program::{AlphaNode, BsdfNode, Culling, LightNode, Program, SourceNode};
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 
 use crate::fingerprint::fingerprint;
 use crate::plan::Plan;
+
+mod sources;
+use sources::{color, scalar, unit};
 
 /// The renderer of a scene as a module: a type `Scene` and, for `lanes` (a variant of the CPU device's `LaneCount`),
 /// a tile renderer `Compiled`.
@@ -168,10 +169,6 @@ fn light_kind(light: &LightNode) -> (String, String) {
         LightNode::Directional => unit("Directional"),
         LightNode::Environment => unit("Environment"),
     }
-}
-
-fn unit(name: &str) -> (String, String) {
-    (name.to_owned(), name.to_owned())
 }
 
 fn attribute_set(attributes: Attributes) -> String {
@@ -399,69 +396,4 @@ fn field(name: &str, value: &str) -> String {
     } else {
         format!("{name}: {value}")
     }
-}
-
-/// A number that reads back as the same bits. Plans hold finite numbers only.
-fn number(value: f32) -> String {
-    assert!(value.is_finite(), "a plan holds finite numbers");
-    format!("{value:?}")
-}
-
-/// A colour source as a type and as a value.
-fn color(node: &ColorNode) -> (String, String) {
-    match node {
-        ColorNode::Const(value) => {
-            let [r, g, b] = value.map(number);
-            (
-                "Const<[f32; 3]>".to_owned(),
-                format!("Const([{r}, {g}, {b}])"),
-            )
-        }
-        ColorNode::Param(offset) => ("Param".to_owned(), format!("Param({offset})")),
-        ColorNode::VertexColor => unit("VertexColor"),
-        ColorNode::Image(node) => image(node),
-        ColorNode::Gray(node) => {
-            let (kind, value) = scalar(node);
-            (format!("Gray<{kind}>"), format!("Gray({value})"))
-        }
-        ColorNode::Product(a, b) => product(color(a), color(b)),
-    }
-}
-
-/// A scalar source as a type and as a value.
-fn scalar(node: &ScalarNode) -> (String, String) {
-    match node {
-        ScalarNode::Const(value) => (
-            "Const<f32>".to_owned(),
-            format!("Const({}_f32)", number(*value)),
-        ),
-        ScalarNode::Param(offset) => ("Param".to_owned(), format!("Param({offset})")),
-        ScalarNode::VertexAlpha => unit("VertexColor"),
-        ScalarNode::Image(node) => image(node),
-        ScalarNode::Product(a, b) => product(scalar(a), scalar(b)),
-    }
-}
-
-fn product(a: (String, String), b: (String, String)) -> (String, String) {
-    (
-        format!("Product<{}, {}>", a.0, b.0),
-        format!("Product({}, {})", a.1, b.1),
-    )
-}
-
-fn image(node: &ImageNode) -> (String, String) {
-    let (u, v) = node.wrap;
-    let (filter, format) = (node.filter, node.format);
-    let transform = match node.uv.transform {
-        None => "None".to_owned(),
-        Some(offset) => format!("Some({offset})"),
-    };
-    (
-        format!("Image<{u:?}, {v:?}, {filter:?}, {format:?}>"),
-        format!(
-            "Image {{ slot: {}, uv: UvMap {{ set: {}, transform: {transform} }}, channel: {}, wrap: ({u:?}, {v:?}), \
-             filter: {filter:?}, format: {format:?} }}",
-            node.slot, node.uv.set, node.channel
-        ),
-    )
 }
