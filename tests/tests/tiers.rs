@@ -1,5 +1,5 @@
-//! Interpreted and specialised renderers give the same bits, whatever the lanes, threads and binding times (DESIGN,
-//! invariant 1). Every specialised renderer is compiled by cargo, so each scene is compiled once for each lane count.
+//! Interpreted and specialised renderers give the same bits, whatever the lanes, threads and binding times
+//! (ARCHITECTURE.md, invariant 1). Every specialised renderer is compiled by cargo, so each scene is compiled once for each lane count.
 
 use std::collections::BTreeSet;
 
@@ -129,6 +129,22 @@ fn one_triangle_and_nothing() {
     );
 }
 
+/// A scene of the repository.
+fn check_shipped(file: &str, compiled: &[LaneCount]) {
+    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    check(&read_scene(&scenes.join(file), None).unwrap(), 2, compiled);
+}
+
+#[test]
+fn still_life() {
+    check_shipped("textured.gltf", BOTH);
+}
+
+#[test]
+fn cornell_box_from_obj() {
+    check_shipped("cornell-box.obj", &[LaneCount::native()]);
+}
+
 fn check_shared(file: &str, compiled: &[LaneCount]) {
     let Some(scenes) = scenes() else { return };
     check(&read_scene(&scenes.join(file), None).unwrap(), 2, compiled);
@@ -146,10 +162,7 @@ fn teapot() {
 
 #[test]
 fn living_room() {
-    check_shared(
-        "interiors/living-room-grey-white.glb",
-        &[LaneCount::native()],
-    );
+    check_shared("interiors/living-room-grey-white.glb", BOTH);
 }
 
 #[test]

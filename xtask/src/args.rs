@@ -207,18 +207,24 @@ pub(crate) struct Size(pub(crate) [u32; 2]);
 impl FromStr for Size {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        let error = || "expected width and height from 1 to 65536, as in 1280x720".to_owned();
+        /// What a film keeps of so many pixels still fits a workstation's memory (5 GiB).
+        const MOST_PIXELS: u64 = 1 << 27;
+        let error = || {
+            "expected width and height from 1 to 65536, at most 134 million pixels, as in 1280x720"
+                .to_owned()
+        };
         let (width, height) = text.split_once(['x', 'X']).ok_or_else(error)?;
         let parse = |part: &str| {
-            part.trim()
-                .parse::<u32>()
-                .ok()
-                .filter(|n| (1..=65536).contains(n))
+            let number = part.trim().parse::<u32>().ok();
+            number.filter(|n| (1..=65536).contains(n)).ok_or_else(error)
         };
-        Ok(Self([
-            parse(width).ok_or_else(error)?,
-            parse(height).ok_or_else(error)?,
-        ]))
+        let size = [parse(width)?, parse(height)?];
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        if pixels <= MOST_PIXELS {
+            Ok(Self(size))
+        } else {
+            Err(error())
+        }
     }
 }
 
@@ -285,6 +291,7 @@ mod tests {
     #[test]
     fn values_parse() {
         assert_eq!("640x480".parse(), Ok(Size([640, 480])));
+        assert!("65536x65536".parse::<Size>().is_err());
         assert!("0x480".parse::<Size>().is_err() && "640".parse::<Size>().is_err());
         assert_eq!("1,-2.5, 3".parse(), Ok(Triple([1.0, -2.5, 3.0])));
         assert!("1,2".parse::<Triple>().is_err() && "1,2,nan".parse::<Triple>().is_err());
