@@ -1,5 +1,7 @@
 //! Lights: records, and the alias table by which one is picked.
 
+use std::collections::HashSet;
+
 use residual_render::domain::Buffer;
 use residual_render::light::environment::HEADER;
 use residual_render::light::{ALIAS_ENTRY, RECORD};
@@ -233,20 +235,23 @@ impl PlannedLights {
         }
     }
 
-    /// Half of the picks go by power, half evenly to each kind, so that a bright sky outside does not starve the
-    /// lamps inside.
+    /// Half of the picks go by power, half evenly to emitting triangles, points, spots, … as far as there are any, so
+    /// that a bright sky outside does not starve the lamps inside. How many *programs* for emission there are must
+    /// not matter: it differs between binding policies, whose images are the same.
     fn write(&self, data: &mut SceneData) {
+        let variant = |kind: usize| std::mem::discriminant(&self.kinds[kind]);
         let total: f64 = self.powers.iter().map(|(power, _)| power).sum();
-        let of_kind = |kind: usize| -> f64 {
-            self.powers
+        let of_variant = |kind: usize| -> f64 {
+            let alike = self
+                .powers
                 .iter()
-                .filter(|(_, other)| *other == kind)
-                .map(|(power, _)| power)
-                .sum()
+                .filter(|(_, other)| variant(*other) == variant(kind));
+            alike.map(|(power, _)| power).sum()
         };
-        let kinds: Vec<f64> = (0..self.kinds.len()).map(of_kind).collect();
+        let sums: Vec<f64> = (0..self.kinds.len()).map(of_variant).collect();
+        let variants: HashSet<_> = (0..self.kinds.len()).map(variant).collect();
         let probability = |&(power, kind): &(f64, usize)| {
-            0.5 * power / total + 0.5 * power / kinds[kind] / kinds.len() as f64
+            0.5 * power / total + 0.5 * power / sums[kind] / variants.len() as f64
         };
         let probabilities: Vec<f64> = self.powers.iter().map(probability).collect();
         let alias = data.buffer_mut(Buffer::LightAlias);
