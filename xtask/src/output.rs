@@ -6,6 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 use exr::prelude::*;
 use residual_render::film::Film;
+use residual_render::texture::srgb_code;
 
 /// What is written beside the pixels.
 pub(crate) struct Metadata {
@@ -87,22 +88,11 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     write().with_context(|| format!("writing {}", path.display()))
 }
 
-/// The code of a linear value in sRGB (IEC 61966-2-1).
-fn encode_srgb(linear: f32) -> u8 {
-    let c = f64::from(linear).clamp(0.0, 1.0);
-    let encoded = if c <= 0.003_130_8 {
-        12.92 * c
-    } else {
-        1.055 * c.powf(1.0 / 2.4) - 0.055
-    };
-    (encoded * 255.0).round() as u8
-}
-
 fn png(film: &Film) -> Result<Vec<u8>> {
     let pixels = film
         .image()
         .into_iter()
-        .flat_map(|rgb| rgb.map(encode_srgb))
+        .flat_map(|rgb| rgb.map(srgb_code))
         .collect();
     let image = image::RgbImage::from_raw(film.width(), film.height(), pixels)
         .expect("the film has as many pixels as its size says");

@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 use residual_bvh::BuildQuality;
 use residual_device_cpu::lanes::OwnedBvh;
 use residual_device_cpu::{CpuDevice, RenderOptions, SceneView};
+use residual_render::texture::srgb_code;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::plan;
 
@@ -48,7 +49,7 @@ fn main() -> Result<()> {
     let pixels = film
         .image()
         .into_iter()
-        .flat_map(|rgb| rgb.map(encode_srgb))
+        .flat_map(|rgb| rgb.map(srgb_code))
         .collect();
     let image = image::RgbImage::from_raw(film.width(), film.height(), pixels)
         .expect("three bytes a pixel");
@@ -62,15 +63,4 @@ fn main() -> Result<()> {
         report.elapsed.as_secs_f64()
     );
     Ok(())
-}
-
-/// The code of a linear value in sRGB.
-fn encode_srgb(linear: f32) -> u8 {
-    let c = linear.clamp(0.0, 1.0);
-    let encoded = if c <= 0.003_130_8 {
-        12.92 * c
-    } else {
-        1.055 * c.powf(1.0 / 2.4) - 0.055
-    };
-    (encoded * 255.0).round() as u8
 }

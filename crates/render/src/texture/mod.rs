@@ -11,7 +11,7 @@ pub use image::{
     AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8,
     Mirror, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
 };
-pub use srgb::srgb_table;
+pub use srgb::{srgb_code, srgb_table};
 
 use crate::domain::{Buffer, Domain};
 use crate::math::vec3::{lit3, vec3};
