@@ -540,3 +540,29 @@ fn pngs_and_exrs_agree() {
         assert!((encoded * 255.0 - f64::from(pixel.0[1])).abs() <= 0.501);
     }
 }
+
+/// Without a compiler the image is made all the same, and it is said why it was interpreted; a compiled renderer that
+/// was asked for outright is not replaced by another.
+#[test]
+fn a_missing_compiler_is_reported() {
+    let folder = workplace();
+    let render = |tier: &str| {
+        Command::new(env!("CARGO_BIN_EXE_residual-tests"))
+            .current_dir(&folder)
+            .env("CARGO", "no-such-cargo")
+            .args(["render", "triangle.obj", "--size", "64x48", "--time", "2s"])
+            .args(["--tier", tier])
+            .output()
+            .unwrap()
+    };
+    let auto = render("auto");
+    let messages = String::from_utf8_lossy(&auto.stderr);
+    assert_eq!(auto.status.code(), Some(0), "{messages}");
+    assert!(messages.contains("could not be compiled"), "{messages}");
+    assert!(messages.contains("no-such-cargo"), "{messages}");
+    assert!(folder.path().join("triangle.png").exists());
+
+    let specialized = render("specialized");
+    assert_eq!(specialized.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&specialized.stderr).contains("no-such-cargo"));
+}

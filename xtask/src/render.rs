@@ -97,8 +97,10 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             .zip(cpu_seconds())
             .map(|(before, after)| after - before);
         bar.finish_and_clear();
-        // A compiler that still runs comes too late.
-        compiler.give_up();
+        // A compiler that still runs comes too late; one that failed is reported below.
+        if compiled.get().is_none() {
+            compiler.give_up();
+        }
         let (film, report) = done.as_ref().expect("just rendered");
         let metadata = Metadata {
             scene: plan.name.clone(),
