@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, BvhView, Hit, Lanes, Ray, any_hit, build, closest_hit,
+    AllHits, BuildQuality, Bvh, BvhView, Hit, Lanes, Ray, Watertight, any_hit, build, closest_hit,
 };
 
 fn main() {
@@ -35,7 +35,7 @@ where
     Token: Traces<N>,
 {
     let start = Instant::now();
-    let bvh = build::<N>(positions, triangles, None, BuildQuality::Best);
+    let bvh = build::<N, N>(positions, triangles, None, BuildQuality::Best);
     println!(
         "width {N:2}: built in {:.2} s, {:.1} MB, cost {:.2}",
         start.elapsed().as_secs_f64(),
@@ -105,7 +105,7 @@ fn closest_hits<S: Lanes<N>, const N: usize>(
     rays: &[Ray],
 ) -> Vec<Hit> {
     rays.iter()
-        .map(|ray| closest_hit(simd, bvh, ray, &AllHits))
+        .map(|ray| closest_hit(simd, Watertight, bvh, ray, &AllHits))
         .collect()
 }
 
@@ -116,7 +116,7 @@ fn count_occluded<S: Lanes<N>, const N: usize>(
     rays: &[Ray],
 ) -> usize {
     rays.iter()
-        .filter(|ray| any_hit(simd, bvh, ray, &AllHits))
+        .filter(|ray| any_hit(simd, Watertight, bvh, ray, &AllHits))
         .count()
 }
 

@@ -1,19 +1,27 @@
 //! Axis-aligned boxes, and the padded box that the builder and the triangle test must agree on.
 //!
-//! The triangle test (`triangle.rs`) rounds vertices relative to the ray, so it may accept a ray
-//! that passes the triangle's exact box at a distance of a few roundings. If a node's box then
-//! turned the ray away, a closed mesh would have a hole, and the answer would depend on the tree.
-//! Two measures prevent it:
-//! - a triangle's box is padded by one unit in the last place of its coordinates and by 2⁻²² of its
-//!   extent, which exceeds the rounding of the edge functions;
-//! - the triangle test accepts a hit only inside this padded box and clamps `t` to the ray's
-//!   passage through it, with the node test's own arithmetic. That arithmetic is monotone, so every
-//!   box containing the padded box is entered no later than `t`: neither culling nor pruning can
-//!   lose a hit, in whatever order the tree is walked.
+//! The triangle test (`precision/watertight.rs`) rounds vertices relative to the ray, so it may
+//! accept a ray that passes the triangle's exact box at a distance of a few roundings, and place
+//! the hit a little outside of it. If a node's box then turned the ray away, or was thought to lie
+//! behind a farther hit, a closed mesh would have a hole, or the answer would depend on the tree.
 //!
-//! The second argument needs the whole padded box inside every ancestor. Split references
-//! (`split.rs`) hold a part of it only; there it fails when rounding moves `t` out of the part,
-//! which takes a triangle seen edge-on and another surface at the same distance.
+//! With `p - q` the three weights before division, `K = Σ(|p| + |q|) / |Σ(p - q)|` and `X` the
+//! greatest distance from the ray to a corner across its direction, the weights' roundings move the
+//! hit across the ray by at most `2 u K X`, `u = 2⁻²⁴`; and `X` is at most twice the triangle's
+//! extent where the ray passes inside. All other roundings are relative to the distance and to the
+//! coordinates. So:
+//! - a triangle's box is padded by 2⁻¹⁶ of its extent, twice what `K = 32` needs, and by one unit in
+//!   the last place of its coordinates; the slab test's own slack (`slab.rs`) covers the distance;
+//! - a hit with a greater `K`, on a triangle seen edge-on, is moved to where the ray passes through
+//!   its padded box, computed with less slack than the nodes' boxes get.
+//!
+//! Hence every box containing the padded box is entered no later than `t` and left no earlier:
+//! neither culling nor pruning can lose a hit, in whatever order the tree is walked. Split
+//! references hold a part of the padded box only. A well-conditioned hit lies within the pad of
+//! the part that it is in; for the ill-conditioned the argument fails, which takes another surface
+//! at nearly the same distance to show.
+
+use crate::Ray;
 
 /// An axis-aligned box; empty when `lo > hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,9 +33,9 @@ pub struct Bounds {
 }
 
 /// Padding relative to the triangle's greatest extent.
-pub(crate) const PAD_EXTENT: f32 = 1.0 / (1 << 22) as f32;
+const PAD_EXTENT: f32 = 1.0 / (1 << 16) as f32;
 /// Padding relative to the coordinate itself: at least one unit in the last place.
-pub(crate) const PAD_COORDINATE: f32 = f32::EPSILON;
+const PAD_COORDINATE: f32 = f32::EPSILON;
 
 impl Bounds {
     /// The box that contains nothing.
@@ -68,7 +76,7 @@ impl Bounds {
     }
 
     /// This box, exact around a triangle or a part of one, padded as for a triangle whose greatest
-    /// extent is `extent`. `triangle.rs` computes the same in vector lanes, bit for bit.
+    /// extent is `extent`.
     #[must_use]
     pub(crate) fn padded(&self, extent: f32) -> Bounds {
         let pad = |x: f32| extent * PAD_EXTENT + x.abs() * PAD_COORDINATE;
@@ -76,6 +84,33 @@ impl Bounds {
             lo: self.lo.map(|x| x - pad(x)),
             hi: self.hi.map(|x| x + pad(x)),
         }
+    }
+
+    /// The padded box of a triangle.
+    pub(crate) fn of_padded_triangle(vertices: &[[f32; 3]; 3]) -> Bounds {
+        let bounds = Bounds::of_triangle(vertices);
+        bounds.padded(bounds.extent())
+    }
+
+    /// Where the ray's line enters and leaves the box, with half the slab test's slack: no earlier
+    /// and no later than the slab test finds for any box around this one. Behind the origin the
+    /// slack points the wrong way, which nobody asks about.
+    pub(crate) fn passage(&self, ray: &Ray) -> (f32, f32) {
+        const SLACK: f32 = 1.0 / (1 << 21) as f32;
+        let (mut entry, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
+        for axis in 0..3 {
+            let inv = 1.0 / ray.dir[axis];
+            let planes = [self.lo[axis], self.hi[axis]];
+            let [near, far] = if ray.dir[axis].is_sign_negative() {
+                [planes[1], planes[0]]
+            } else {
+                planes
+            };
+            // In a plane of the box, 0 · ∞ is NaN, which `max` and `min` drop.
+            entry = entry.max((near - ray.org[axis]) * inv * (1.0 - SLACK));
+            exit = exit.min((far - ray.org[axis]) * inv * (1.0 + SLACK));
+        }
+        (entry, exit)
     }
 
     /// Greatest extent along an axis; may overflow to infinity, which pads to infinity.

@@ -51,12 +51,12 @@ impl Mesh<'_> {
 /// # Panics
 /// If a vertex index is out of range, there are marks but not one for each triangle, or there are
 /// 2³¹ triangles or more.
-pub fn build<const N: usize>(
+pub fn build<const N: usize, const P: usize>(
     positions: &[[f32; 3]],
     triangles: &[[u32; 3]],
     single_sided: Option<&[bool]>,
     quality: BuildQuality,
-) -> Bvh<N> {
+) -> Bvh<N, P> {
     assert!(triangles.len() < 1 << 31, "too many triangles");
     assert!(
         single_sided.is_none_or(|marks| marks.len() == triangles.len()),
@@ -80,12 +80,9 @@ pub fn build<const N: usize>(
 
 /// One reference for each triangle.
 pub(crate) fn whole_references(mesh: &Mesh<'_>, prims: &[u32]) -> Vec<Reference> {
-    let whole = |&prim: &u32| {
-        let bounds = Bounds::of_triangle(&mesh.vertices(prim));
-        Reference {
-            prim,
-            bounds: bounds.padded(bounds.extent()),
-        }
+    let whole = |&prim: &u32| Reference {
+        prim,
+        bounds: Bounds::of_padded_triangle(&mesh.vertices(prim)),
     };
     prims.iter().map(whole).collect()
 }

@@ -9,6 +9,9 @@ use crate::validate::{InvalidBvh, check_structure};
 /// [`BvhView::new`] checks it, so that the traversal's stack cannot overflow.
 pub(crate) const MAX_DEPTH: usize = 64;
 
+/// Marks a triangle index as single-sided.
+pub(crate) const SINGLE_SIDED: u32 = 1 << 31;
+
 /// `N` child boxes and what they hold.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
@@ -20,39 +23,34 @@ pub struct Node<const N: usize> {
     pub children: [u32; N],
 }
 
-/// `N` triangles, or fewer: unused lanes have NaN vertices, which nothing hits.
+/// `P` triangles, or fewer: unused lanes have NaN vertices, which nothing hits.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub struct TrianglePacket<const N: usize> {
-    /// First vertices, `[axis][lane]`.
-    pub v0: [[f32; N]; 3],
-    /// Second vertices, `[axis][lane]`.
-    pub v1: [[f32; N]; 3],
-    /// Third vertices, `[axis][lane]`.
-    pub v2: [[f32; N]; 3],
+pub struct TrianglePacket<const P: usize> {
+    /// Corners, `[vertex][axis][lane]`.
+    pub vertices: [[[f32; P]; 3]; 3],
     /// Triangle indices; the high bit marks a triangle as single-sided.
-    pub prim_ids: [u32; N],
+    pub prim_ids: [u32; P],
 }
 
+/// Bytes: whole cache lines.
 macro_rules! assert_layout {
-    ($n:literal, $node_size:literal, $packet_size:literal) => {
+    ($type:ty, $size:literal, $last:ident at $offset:literal) => {
         const _: () = assert!(
-            size_of::<Node<$n>>() == $node_size
-                && align_of::<Node<$n>>() == 64
-                && offset_of!(Node<$n>, children) == 24 * $n
-        );
-        const _: () = assert!(
-            size_of::<TrianglePacket<$n>>() == $packet_size
-                && align_of::<TrianglePacket<$n>>() == 64
-                && offset_of!(TrianglePacket<$n>, v1) == 12 * $n
-                && offset_of!(TrianglePacket<$n>, v2) == 24 * $n
-                && offset_of!(TrianglePacket<$n>, prim_ids) == 36 * $n
+            size_of::<$type>() == $size
+                && align_of::<$type>() == 64
+                && offset_of!($type, $last) == $offset
         );
     };
 }
-assert_layout!(4, 128, 192);
-assert_layout!(8, 256, 320);
-assert_layout!(16, 448, 640);
+assert_layout!(Node<2>, 64, children at 48);
+assert_layout!(Node<4>, 128, children at 96);
+assert_layout!(Node<8>, 256, children at 192);
+assert_layout!(Node<16>, 448, children at 384);
+assert_layout!(TrianglePacket<1>, 64, prim_ids at 36);
+assert_layout!(TrianglePacket<4>, 192, prim_ids at 144);
+assert_layout!(TrianglePacket<8>, 320, prim_ids at 288);
+assert_layout!(TrianglePacket<16>, 640, prim_ids at 576);
 
 impl<const N: usize> Node<N> {
     /// A node without children.
@@ -85,17 +83,12 @@ impl<const N: usize> Node<N> {
     }
 }
 
-impl<const N: usize> TrianglePacket<N> {
-    /// Marks a triangle index as single-sided.
-    pub(crate) const SINGLE_SIDED: u32 = 1 << 31;
-
+impl<const P: usize> TrianglePacket<P> {
     /// A packet without triangles. NaN fails every comparison, so that unused lanes do not defeat
     /// the kernel's early way out as degenerate zeros would.
-    pub(crate) const VACANT: TrianglePacket<N> = TrianglePacket {
-        v0: [[f32::NAN; N]; 3],
-        v1: [[f32::NAN; N]; 3],
-        v2: [[f32::NAN; N]; 3],
-        prim_ids: [u32::MAX; N],
+    pub(crate) const VACANT: TrianglePacket<P> = TrianglePacket {
+        vertices: [[[f32::NAN; P]; 3]; 3],
+        prim_ids: [u32::MAX; P],
     };
 }
 
@@ -109,6 +102,7 @@ impl Child {
     const FIRST_BITS: u32 = 27;
     pub(crate) const MAX_PACKETS: usize = 15;
     pub(crate) const VACANT: Child = Child(Child::LEAF);
+    pub(crate) const ROOT: Child = Child(0);
 
     pub(crate) fn node(index: usize) -> Child {
         assert!(index < Child::LEAF as usize, "too many nodes");
@@ -140,18 +134,19 @@ impl Child {
     }
 }
 
-/// A bounding volume hierarchy over triangles: `N` children a node, `N` triangles a packet.
+/// A bounding volume hierarchy over triangles: `N` children a node (2, 4, 8 or 16), `P` triangles a
+/// packet (1, 4, 8 or 16).
 #[derive(Clone, Debug)]
-pub struct Bvh<const N: usize> {
+pub struct Bvh<const N: usize, const P: usize = N> {
     pub(crate) nodes: Vec<Node<N>>,
-    pub(crate) packets: Vec<TrianglePacket<N>>,
+    pub(crate) packets: Vec<TrianglePacket<P>>,
     pub(crate) sah_cost: f32,
 }
 
-impl<const N: usize> Bvh<N> {
+impl<const N: usize, const P: usize> Bvh<N, P> {
     /// What the kernels take.
     #[inline(always)]
-    pub fn view(&self) -> BvhView<'_, N> {
+    pub fn view(&self) -> BvhView<'_, N, P> {
         BvhView {
             nodes: &self.nodes,
             packets: &self.packets,
@@ -164,7 +159,7 @@ impl<const N: usize> Bvh<N> {
     }
 
     /// The triangles, leaf by leaf.
-    pub fn packets(&self) -> &[TrianglePacket<N>] {
+    pub fn packets(&self) -> &[TrianglePacket<P>] {
         &self.packets
     }
 
@@ -190,19 +185,19 @@ impl<const N: usize> Bvh<N> {
 
 /// A hierarchy whose structure is known to be sound, wherever its bytes came from.
 #[derive(Clone, Copy, Debug)]
-pub struct BvhView<'a, const N: usize> {
+pub struct BvhView<'a, const N: usize, const P: usize = N> {
     nodes: &'a [Node<N>],
-    packets: &'a [TrianglePacket<N>],
+    packets: &'a [TrianglePacket<P>],
 }
 
-impl<'a, const N: usize> BvhView<'a, N> {
+impl<'a, const N: usize, const P: usize> BvhView<'a, N, P> {
     /// Checks everything that the kernels' memory safety and termination rest on: a root, children
     /// and packets in range, a tree with parents before children, a depth within the stack's bound;
     /// and also that every node's boxes lie inside the box that its parent holds for it.
     pub fn new(
         nodes: &'a [Node<N>],
-        packets: &'a [TrianglePacket<N>],
-    ) -> Result<BvhView<'a, N>, InvalidBvh> {
+        packets: &'a [TrianglePacket<P>],
+    ) -> Result<BvhView<'a, N, P>, InvalidBvh> {
         check_structure(nodes, packets)?;
         Ok(BvhView { nodes, packets })
     }
@@ -215,8 +210,8 @@ impl<'a, const N: usize> BvhView<'a, N> {
     #[inline(always)]
     pub unsafe fn new_unchecked(
         nodes: &'a [Node<N>],
-        packets: &'a [TrianglePacket<N>],
-    ) -> BvhView<'a, N> {
+        packets: &'a [TrianglePacket<P>],
+    ) -> BvhView<'a, N, P> {
         BvhView { nodes, packets }
     }
 
@@ -228,7 +223,7 @@ impl<'a, const N: usize> BvhView<'a, N> {
 
     /// The triangles, leaf by leaf.
     #[inline(always)]
-    pub fn packets(&self) -> &'a [TrianglePacket<N>] {
+    pub fn packets(&self) -> &'a [TrianglePacket<P>] {
         self.packets
     }
 }

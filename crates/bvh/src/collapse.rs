@@ -9,7 +9,7 @@
 use crate::Bvh;
 use crate::binary::{BinaryNode, BinaryTree};
 use crate::build::{Mesh, Reference};
-use crate::bvh::{Child, Node, TrianglePacket};
+use crate::bvh::{Child, Node, SINGLE_SIDED, TrianglePacket};
 use crate::validate::check_structure;
 
 /// Cost of testing a ray against a packet, in units of testing it against a node.
@@ -33,11 +33,11 @@ struct Plan<const N: usize> {
 }
 
 /// The wide hierarchy over `references`, which the tree's leaves index.
-pub(crate) fn collapse<const N: usize>(
+pub(crate) fn collapse<const N: usize, const P: usize>(
     tree: &BinaryTree,
     references: &[Reference],
     mesh: &Mesh<'_>,
-) -> Bvh<N> {
+) -> Bvh<N, P> {
     let mut bvh = Bvh {
         nodes: vec![Node::VACANT],
         packets: Vec::new(),
@@ -53,7 +53,7 @@ pub(crate) fn collapse<const N: usize>(
         .iter()
         .map(|bounds| (bounds.half_area() / root_area) as f32)
         .collect();
-    let plans: Vec<Plan<N>> = plan(tree, &areas);
+    let plans: Vec<Plan<N>> = plan::<N, P>(tree, &areas);
 
     // Wide nodes in preorder: (binary node, wide node). Parents come before their children.
     let mut pending = vec![(0u32, 0usize)];
@@ -81,7 +81,7 @@ pub(crate) fn collapse<const N: usize>(
     bvh
 }
 
-fn plan<const N: usize>(tree: &BinaryTree, areas: &[f32]) -> Vec<Plan<N>> {
+fn plan<const N: usize, const P: usize>(tree: &BinaryTree, areas: &[f32]) -> Vec<Plan<N>> {
     let unplanned = Plan {
         cost: [0.0; N],
         left_roots: [0; N],
@@ -96,14 +96,18 @@ fn plan<const N: usize>(tree: &BinaryTree, areas: &[f32]) -> Vec<Plan<N>> {
                 ..unplanned
             },
             BinaryNode::Inner(left, right) => {
-                plan_inner(&plans[left as usize], &plans[right as usize], areas[index])
+                plan_inner::<N, P>(&plans[left as usize], &plans[right as usize], areas[index])
             }
         };
     }
     plans
 }
 
-fn plan_inner<const N: usize>(left: &Plan<N>, right: &Plan<N>, area: f32) -> Plan<N> {
+fn plan_inner<const N: usize, const P: usize>(
+    left: &Plan<N>,
+    right: &Plan<N>,
+    area: f32,
+) -> Plan<N> {
     // The best distribution of `roots` among the children: its cost and the left child's share.
     let distribute = |roots: usize| {
         (1..roots)
@@ -113,7 +117,7 @@ fn plan_inner<const N: usize>(left: &Plan<N>, right: &Plan<N>, area: f32) -> Pla
             })
     };
     let count = left.count.saturating_add(right.count);
-    let packets = (count as usize).div_ceil(N);
+    let packets = (count as usize).div_ceil(P);
     let leaf_cost = if packets <= MAX_LEAF_PACKETS {
         PACKET_COST * packets as f32 * area
     } else {
@@ -171,8 +175,8 @@ fn slots_of<const N: usize>(tree: &BinaryTree, plans: &[Plan<N>], node: u32) -> 
 }
 
 /// Writes the triangles below a binary node, each once, and returns the leaf that holds them.
-fn push_leaf<const N: usize>(
-    packets: &mut Vec<TrianglePacket<N>>,
+fn push_leaf<const P: usize>(
+    packets: &mut Vec<TrianglePacket<P>>,
     tree: &BinaryTree,
     node: u32,
     references: &[Reference],
@@ -186,21 +190,20 @@ fn push_leaf<const N: usize>(
     prims.sort_unstable();
     prims.dedup();
     let first = packets.len();
-    packets.extend(prims.chunks(N).map(|prims| packet_of(prims, mesh)));
+    packets.extend(prims.chunks(P).map(|prims| packet_of(prims, mesh)));
     Child::leaf(first, packets.len() - first)
 }
 
-fn packet_of<const N: usize>(prims: &[u32], mesh: &Mesh<'_>) -> TrianglePacket<N> {
+fn packet_of<const P: usize>(prims: &[u32], mesh: &Mesh<'_>) -> TrianglePacket<P> {
     let mut packet = TrianglePacket::VACANT;
     for (lane, &prim) in prims.iter().enumerate() {
-        let [v0, v1, v2] = mesh.vertices(prim);
-        for axis in 0..3 {
-            packet.v0[axis][lane] = v0[axis];
-            packet.v1[axis][lane] = v1[axis];
-            packet.v2[axis][lane] = v2[axis];
+        for (rows, vertex) in packet.vertices.iter_mut().zip(mesh.vertices(prim)) {
+            for (row, coordinate) in rows.iter_mut().zip(vertex) {
+                row[lane] = coordinate;
+            }
         }
         let mark = if mesh.is_single_sided(prim) {
-            TrianglePacket::<N>::SINGLE_SIDED
+            SINGLE_SIDED
         } else {
             0
         };

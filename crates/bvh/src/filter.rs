@@ -1,5 +1,6 @@
 //! Which of the triangles that a ray meets count as hits.
 
+use crate::bvh::SINGLE_SIDED;
 use crate::{Hit, Ray};
 
 /// Which sides of a triangle can be hit. The front is the side from which the vertices appear
@@ -56,4 +57,26 @@ impl HitFilter for FrontHits {
 impl HitFilter for MarkedHits {
     const CULLING: Culling = Culling::PerTriangle;
     const REJECTS: bool = false;
+}
+
+/// Replaces `best` by a nearer hit, or an equal one on a triangle of smaller index, that counts.
+/// `hit.prim` still has its mark; `back` says whether it was hit from behind. Returns whether it
+/// did.
+#[inline(always)]
+pub(crate) fn improve<F: HitFilter>(
+    best: &mut Hit,
+    mut hit: Hit,
+    back: bool,
+    ray: &Ray,
+    filter: &F,
+) -> bool {
+    let marked = hit.prim & SINGLE_SIDED != 0;
+    hit.prim &= !SINGLE_SIDED;
+    let culled = matches!(F::CULLING, Culling::PerTriangle) && marked && back;
+    let nearer = hit.t < best.t || (hit.t == best.t && hit.prim < best.prim);
+    let improves = nearer && !culled && (!F::REJECTS || filter.accept(ray, &hit));
+    if improves {
+        *best = hit;
+    }
+    improves
 }

@@ -1,15 +1,18 @@
 //! The vector operations that the kernels call, and nothing else, over fearless_simd's tokens.
 //!
-//! There is deliberately no fused multiply-add. Without it every instruction set gives the same
-//! bits, and nobody can decide an edge by the sign of a fused difference, which opens cracks.
+//! The fused multiply-add is for bounds that stay conservative however it rounds, and for
+//! [`Fast`](crate::Fast). What decides a watertight hit does without: so every instruction set
+//! gives the same bits, and no edge is decided by the sign of a fused difference, which opens
+//! cracks.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x4, f32x8, f32x16, mask32x4, mask32x8, mask32x16};
 
-/// `N` lanes of `f32` on the instruction set that the token `Self` stands for; `N` is 4, 8 or 16.
+/// `N` lanes of `f32` on the instruction set that the token `Self` stands for; `N` is 1, 2, 4, 8
+/// or 16.
 ///
-/// Every fearless_simd token implements it at the three widths, so a function generic in the width
-/// says `S: Lanes<N>` and needs no other bound.
+/// Every fearless_simd token implements it at all widths, so a function generic in the width
+/// says `S: Lanes<N>` and needs no other bound. Widths 1 and 2 are arrays.
 pub trait Lanes<const N: usize>: fearless_simd::Simd {
     /// `N` floats.
     type Float: Copy;
@@ -28,6 +31,10 @@ pub trait Lanes<const N: usize>: fearless_simd::Simd {
     fn sub(self, a: Self::Float, b: Self::Float) -> Self::Float;
     /// `a * b`.
     fn mul(self, a: Self::Float, b: Self::Float) -> Self::Float;
+    /// `a * b + c`, rounded once where the instruction set can, else twice.
+    fn mul_add(self, a: Self::Float, b: Self::Float, c: Self::Float) -> Self::Float;
+    /// `a * b - c`, rounded as [`mul_add`](Lanes::mul_add).
+    fn mul_sub(self, a: Self::Float, b: Self::Float, c: Self::Float) -> Self::Float;
     /// `a / b`.
     fn div(self, a: Self::Float, b: Self::Float) -> Self::Float;
     /// `|a|`.
@@ -83,6 +90,14 @@ macro_rules! implement_lanes {
                 a * b
             }
             #[inline(always)]
+            fn mul_add(self, a: $float<S>, b: $float<S>, c: $float<S>) -> $float<S> {
+                a.mul_add(b, c)
+            }
+            #[inline(always)]
+            fn mul_sub(self, a: $float<S>, b: $float<S>, c: $float<S>) -> $float<S> {
+                a.mul_sub(b, c)
+            }
+            #[inline(always)]
             fn div(self, a: $float<S>, b: $float<S>) -> $float<S> {
                 a / b
             }
@@ -129,3 +144,88 @@ macro_rules! implement_lanes {
 implement_lanes!(4, f32x4, mask32x4);
 implement_lanes!(8, f32x8, mask32x8);
 implement_lanes!(16, f32x16, mask32x16);
+
+/// Too narrow for registers: arrays, left to the compiler.
+macro_rules! implement_narrow_lanes {
+    ($n:literal) => {
+        impl<S: fearless_simd::Simd> Lanes<$n> for S {
+            type Float = [f32; $n];
+            type Mask = [bool; $n];
+
+            #[inline(always)]
+            fn splat(self, x: f32) -> [f32; $n] {
+                [x; $n]
+            }
+            #[inline(always)]
+            fn load(self, array: &[f32; $n]) -> [f32; $n] {
+                *array
+            }
+            #[inline(always)]
+            fn store(self, a: [f32; $n], array: &mut [f32; $n]) {
+                *array = a;
+            }
+            #[inline(always)]
+            fn add(self, a: [f32; $n], b: [f32; $n]) -> [f32; $n] {
+                zip(a, b, |a, b| a + b)
+            }
+            #[inline(always)]
+            fn sub(self, a: [f32; $n], b: [f32; $n]) -> [f32; $n] {
+                zip(a, b, |a, b| a - b)
+            }
+            #[inline(always)]
+            fn mul(self, a: [f32; $n], b: [f32; $n]) -> [f32; $n] {
+                zip(a, b, |a, b| a * b)
+            }
+            #[inline(always)]
+            fn mul_add(self, a: [f32; $n], b: [f32; $n], c: [f32; $n]) -> [f32; $n] {
+                zip(zip(a, b, |a, b| a * b), c, |ab, c| ab + c)
+            }
+            #[inline(always)]
+            fn mul_sub(self, a: [f32; $n], b: [f32; $n], c: [f32; $n]) -> [f32; $n] {
+                zip(zip(a, b, |a, b| a * b), c, |ab, c| ab - c)
+            }
+            #[inline(always)]
+            fn div(self, a: [f32; $n], b: [f32; $n]) -> [f32; $n] {
+                zip(a, b, |a, b| a / b)
+            }
+            #[inline(always)]
+            fn abs(self, a: [f32; $n]) -> [f32; $n] {
+                a.map(f32::abs)
+            }
+            #[inline(always)]
+            fn min_number(self, a: [f32; $n], number: [f32; $n]) -> [f32; $n] {
+                zip(a, number, |a, b| if a < b { a } else { b })
+            }
+            #[inline(always)]
+            fn max_number(self, a: [f32; $n], number: [f32; $n]) -> [f32; $n] {
+                zip(a, number, |a, b| if a > b { a } else { b })
+            }
+            #[inline(always)]
+            fn le(self, a: [f32; $n], b: [f32; $n]) -> [bool; $n] {
+                zip(a, b, |a, b| a <= b)
+            }
+            #[inline(always)]
+            fn lt(self, a: [f32; $n], b: [f32; $n]) -> [bool; $n] {
+                zip(a, b, |a, b| a < b)
+            }
+            #[inline(always)]
+            fn and(self, a: [bool; $n], b: [bool; $n]) -> [bool; $n] {
+                zip(a, b, |a, b| a & b)
+            }
+            #[inline(always)]
+            fn bits(self, mask: [bool; $n]) -> u32 {
+                mask.iter()
+                    .rev()
+                    .fold(0, |bits, &lane| bits << 1 | u32::from(lane))
+            }
+        }
+    };
+}
+
+#[inline(always)]
+fn zip<A: Copy, B: Copy, C, const N: usize>(a: [A; N], b: [B; N], f: impl Fn(A, B) -> C) -> [C; N] {
+    std::array::from_fn(|lane| f(a[lane], b[lane]))
+}
+
+implement_narrow_lanes!(1);
+implement_narrow_lanes!(2);

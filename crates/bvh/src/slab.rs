@@ -1,103 +1,231 @@
-//! One ray against `N` boxes: the slab test, conservative under rounding.
+//! Rays against boxes: the slab test, conservative under rounding.
 //!
-//! T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013. Three details matter:
-//! - `(plane - org) * inverse` and not `plane * inverse - org * inverse`: the latter cancels.
-//! - The slack is folded into the inverse. The product carries three roundings of 2⁻²⁴, four more
-//!   if the inverse is subnormal; the rest of the 2⁻²⁰ covers the roundings of vertices relative to
-//!   the origin in the triangle test.
-//! - A ray lying in a plane of a box yields 0 · ∞ = NaN for it. Dropping NaN enters the boxes on
-//!   both sides of the plane.
+//! T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013. The distance to a plane is
+//! `scale * plane + shift`, one fused operation, with `scale = 1 / dir` and
+//! `shift = -org / dir`. What that cancels, and more, is folded into the ray's constants:
+//! - `scale` is shrunk for entries and stretched for exits by 2⁻²⁰: the product's roundings and
+//!   those of the triangle test, all relative to the distance;
+//! - `shift` is moved by 2⁻²² of itself, for the roundings relative to the origin's coordinates.
+//!   In space that is two units in the last place of the origin.
+//!
+//! A component of the direction below 2⁻⁶⁴ of the greatest counts as that: a ray lying in a plane
+//! of a box then enters it. Where a constant overflows, the distances are NaN, which the minimum
+//! and maximum drop: the axis does not cull.
+//!
+//! The same test serves one ray against the `N` boxes of a node, `N` rays against one box, and the
+//! envelope of a packet of rays against `N` boxes.
 
 use crate::bvh::Node;
+use crate::columns::{Columns, greatest, least};
 use crate::{Lanes, Ray};
 
-const SLACK: f32 = 1.0 / (1 << 20) as f32;
+const STRETCH: f32 = 1.0 / (1 << 20) as f32;
+const REACH: f32 = 1.0 / (1 << 22) as f32;
+/// Least component of a direction, relative to the greatest.
+pub(crate) const LEAST: f32 = 1.0 / (1u128 << 64) as f32;
 
-/// A ray prepared for slab tests. Distances are in units of its direction.
-pub(crate) struct SlabRay<S: Lanes<N>, const N: usize> {
-    /// `[axis]`
-    org: [S::Float; 3],
-    /// Inverse direction towards the entry and exit planes, `[axis]`, slack included.
-    inv_near: [S::Float; 3],
-    inv_far: [S::Float; 3],
-    /// Whether the direction is negative: then boxes are entered through their upper planes.
-    negative: [bool; 3],
+/// Which planes of a box a ray enters through: whether its direction is negative along each axis.
+pub(crate) type Octant = [bool; 3];
+
+#[inline(always)]
+pub(crate) fn octant(ray: &Ray) -> Octant {
+    ray.dir.map(f32::is_sign_negative)
+}
+
+/// `scale` and `shift` of the entry and the exit planes' distances, `[axis]`.
+#[derive(Clone, Copy)]
+struct Constants {
+    near_scale: [f32; 3],
+    near_shift: [f32; 3],
+    far_scale: [f32; 3],
+    far_shift: [f32; 3],
+}
+
+impl Constants {
+    /// For rays from `near_org`, as slow as `near_inv`, into the boxes and from `far_org`, as
+    /// fast as `far_inv`, out of them.
+    #[inline(always)]
+    fn new(near_org: [f32; 3], near_inv: [f32; 3], far_org: [f32; 3], far_inv: [f32; 3]) -> Self {
+        let scaled = |inv: [f32; 3], by: f32| [inv[0] * by, inv[1] * by, inv[2] * by];
+        let near_scale = scaled(near_inv, 1.0 - STRETCH);
+        let far_scale = scaled(far_inv, 1.0 + STRETCH);
+        let near = |axis: usize| {
+            let shift = near_org[axis] * near_scale[axis];
+            -shift - shift.abs() * REACH
+        };
+        let far = |axis: usize| {
+            let shift = far_org[axis] * far_scale[axis];
+            -shift + shift.abs() * REACH
+        };
+        Constants {
+            near_scale,
+            near_shift: [near(0), near(1), near(2)],
+            far_scale,
+            far_shift: [far(0), far(1), far(2)],
+        }
+    }
+}
+
+/// The inverse direction.
+#[inline(always)]
+fn inverse(ray: &Ray) -> [f32; 3] {
+    let [x, y, z] = ray.dir.map(f32::abs);
+    let least = x.max(y).max(z) * LEAST;
+    let inverse = |x: f32| {
+        1.0 / if x.abs() < least {
+            least.copysign(x)
+        } else {
+            x
+        }
+    };
+    [
+        inverse(ray.dir[0]),
+        inverse(ray.dir[1]),
+        inverse(ray.dir[2]),
+    ]
+}
+
+/// Rays of one octant, prepared for slab tests. Distances are in units of their directions.
+pub(crate) struct Slab<S: Lanes<N>, const N: usize> {
+    near_scale: [S::Float; 3],
+    near_shift: [S::Float; 3],
+    far_scale: [S::Float; 3],
+    far_shift: [S::Float; 3],
+    /// Row of the entry plane in a node's bounds; its exit plane's is this with the low bit
+    /// flipped.
+    near_row: [usize; 3],
     tmin: S::Float,
 }
 
-impl<S: Lanes<N>, const N: usize> SlabRay<S, N> {
-    /// `tmin` must not be negative: the slack would then point the wrong way.
+impl<S: Lanes<N>, const N: usize> Slab<S, N> {
+    /// One ray, in every lane. `tmin` must not be negative: the slack would then point the wrong
+    /// way.
     #[inline(always)]
-    pub(crate) fn new(simd: S, ray: &Ray, tmin: f32) -> SlabRay<S, N> {
-        let inv = [1.0 / ray.dir[0], 1.0 / ray.dir[1], 1.0 / ray.dir[2]];
+    pub(crate) fn of_ray(simd: S, ray: &Ray, tmin: f32) -> Slab<S, N> {
+        let inv = inverse(ray);
+        let constants = Constants::new(ray.org, inv, ray.org, inv);
+        Slab::splat(simd, &constants, octant(ray), tmin)
+    }
+
+    /// A ray a lane, all of one octant, and valid.
+    #[inline(always)]
+    pub(crate) fn of_rays(simd: S, rays: &Columns<N>, octant: Octant) -> Slab<S, N> {
+        let axes = [0, 1, 2];
+        let inv = rays.inverse(simd, octant);
+        let scale = |by: f32| axes.map(|axis| simd.mul(inv[axis], simd.splat(by)));
+        let (near_scale, far_scale) = (scale(1.0 - STRETCH), scale(1.0 + STRETCH));
+        let shift = |scale: [S::Float; 3], reach: f32| {
+            axes.map(|axis| {
+                let shift = simd.mul(simd.load(&rays.org[axis]), scale[axis]);
+                let slack = simd.mul(simd.abs(shift), simd.splat(reach));
+                simd.sub(slack, shift)
+            })
+        };
+        Slab {
+            near_scale,
+            near_shift: shift(near_scale, -REACH),
+            far_scale,
+            far_shift: shift(far_scale, REACH),
+            near_row: near_rows(octant),
+            tmin: simd.load(&rays.tmin),
+        }
+    }
+
+    /// What encloses all rays, which are of one octant and valid, in every lane: it enters a box
+    /// no later, and leaves it no earlier, than any of them.
+    #[inline(always)]
+    pub(crate) fn enclosing<const R: usize>(
+        simd: S,
+        rays: &Columns<R>,
+        octant: Octant,
+    ) -> Slab<S, N>
+    where
+        S: Lanes<R>,
+    {
+        let inv = rays.inverse(simd, octant);
+        let (mut near_org, mut far_org) = ([0.0; 3], [0.0; 3]);
+        let (mut near_inv, mut far_inv) = ([0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let mut inverse = [0.0; R];
+            simd.store(inv[axis], &mut inverse);
+            let (lo_org, hi_org) = (least(rays.org[axis]), greatest(rays.org[axis]));
+            let (lo_inv, hi_inv) = (least(inverse), greatest(inverse));
+            // Where planes lie behind an origin the bounds are wrong, but below zero as they
+            // should.
+            (near_org[axis], far_org[axis], near_inv[axis], far_inv[axis]) = if octant[axis] {
+                (lo_org, hi_org, hi_inv, lo_inv)
+            } else {
+                (hi_org, lo_org, lo_inv, hi_inv)
+            };
+        }
+        let constants = Constants::new(near_org, near_inv, far_org, far_inv);
+        Slab::splat(simd, &constants, octant, least(rays.tmin))
+    }
+
+    #[inline(always)]
+    fn splat(simd: S, constants: &Constants, octant: Octant, tmin: f32) -> Slab<S, N> {
         let splat = |x: [f32; 3]| [simd.splat(x[0]), simd.splat(x[1]), simd.splat(x[2])];
-        let scaled = |s: f32| splat([inv[0] * s, inv[1] * s, inv[2] * s]);
-        SlabRay {
-            org: splat(ray.org),
-            inv_near: scaled(1.0 - SLACK),
-            inv_far: scaled(1.0 + SLACK),
-            negative: [inv[0] < 0.0, inv[1] < 0.0, inv[2] < 0.0],
+        Slab {
+            near_scale: splat(constants.near_scale),
+            near_shift: splat(constants.near_shift),
+            far_scale: splat(constants.far_scale),
+            far_shift: splat(constants.far_shift),
+            near_row: near_rows(octant),
             tmin: simd.splat(tmin),
         }
     }
 
-    /// Where the ray enters and leaves the node's boxes, within `[tmin, tmax]`; it touches those
-    /// with `entry <= exit`.
+    /// The lanes whose ray touches its box within `[tmin, tmax]`, as bits, and where it enters.
+    /// `plane(row)` gives the boxes' planes in the order of [`Node::bounds`].
     #[inline(always)]
-    pub(crate) fn node_interval(
+    fn touched(
         &self,
         simd: S,
-        node: &Node<N>,
+        plane: impl Fn(usize) -> S::Float,
         tmax: S::Float,
-    ) -> (S::Float, S::Float) {
-        let mut entry = self.tmin;
-        let mut exit = tmax;
-        for axis in 0..3 {
-            let near = 2 * axis + self.negative[axis] as usize;
-            // SAFETY: axis is at most 2 and a bool at most 1, so near is at most 5; flipping the
-            // low bit of a number in 0..6 stays in 0..6.
-            let (near, far) = unsafe {
-                (
-                    node.bounds.get_unchecked(near),
-                    node.bounds.get_unchecked(near ^ 1),
-                )
-            };
-            let near = simd.mul(
-                simd.sub(simd.load(near), self.org[axis]),
-                self.inv_near[axis],
-            );
-            let far = simd.mul(simd.sub(simd.load(far), self.org[axis]), self.inv_far[axis]);
-            entry = simd.max_number(near, entry);
-            exit = simd.min_number(far, exit);
-        }
-        (entry, exit)
+    ) -> (u32, S::Float) {
+        let near = |axis: usize| {
+            let plane = plane(self.near_row[axis]);
+            simd.mul_add(plane, self.near_scale[axis], self.near_shift[axis])
+        };
+        let far = |axis: usize| {
+            let plane = plane(self.near_row[axis] ^ 1);
+            simd.mul_add(plane, self.far_scale[axis], self.far_shift[axis])
+        };
+        let entry = simd.max_number(near(0), self.tmin);
+        let entry = simd.max_number(near(2), simd.max_number(near(1), entry));
+        let exit = simd.min_number(far(0), tmax);
+        let exit = simd.min_number(far(2), simd.min_number(far(1), exit));
+        (simd.bits(simd.le(entry, exit)), entry)
     }
 
-    /// Where the ray's line enters and leaves the boxes `[lo, hi]`, `[axis]` each, with the node
-    /// test's roundings. Not clipped to the ray's interval; behind the origin the slack points the
-    /// wrong way, which nobody asks about.
+    /// One ray, or an envelope, against the boxes of a node.
     #[inline(always)]
-    pub(crate) fn box_interval(
+    pub(crate) fn touched_children(&self, simd: S, node: &Node<N>, tmax: f32) -> (u32, S::Float) {
+        let plane = |row: usize| {
+            // SAFETY: near rows are 0 to 5, and so are they with the low bit flipped.
+            simd.load(unsafe { node.bounds.get_unchecked(row) })
+        };
+        self.touched(simd, plane, simd.splat(tmax))
+    }
+
+    /// A ray a lane against one box of a node.
+    #[inline(always)]
+    pub(crate) fn touching_rays<const W: usize>(
         &self,
         simd: S,
-        lo: [S::Float; 3],
-        hi: [S::Float; 3],
-    ) -> (S::Float, S::Float) {
-        let mut entry = simd.splat(f32::NEG_INFINITY);
-        let mut exit = simd.splat(f32::INFINITY);
-        for axis in 0..3 {
-            let (near, far) = if self.negative[axis] {
-                (hi[axis], lo[axis])
-            } else {
-                (lo[axis], hi[axis])
-            };
-            let near = simd.mul(simd.sub(near, self.org[axis]), self.inv_near[axis]);
-            let far = simd.mul(simd.sub(far, self.org[axis]), self.inv_far[axis]);
-            entry = simd.max_number(near, entry);
-            exit = simd.min_number(far, exit);
-        }
-        (entry, exit)
+        node: &Node<W>,
+        slot: usize,
+        tmax: &[f32; N],
+    ) -> u32 {
+        let plane = |row: usize| simd.splat(node.bounds[row % 6][slot % W]);
+        self.touched(simd, plane, simd.load(tmax)).0
     }
+}
+
+#[inline(always)]
+fn near_rows(octant: Octant) -> [usize; 3] {
+    [0, 1, 2].map(|axis| 2 * axis + octant[axis] as usize)
 }
 
 #[cfg(test)]

@@ -1,202 +1,232 @@
-//! One ray against `N` triangles: the watertight shear test.
+//! Rays against triangles: what every precision's test starts from and returns.
 //!
-//! S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Vertices
-//! are moved to the ray's origin and sheared so that the ray runs along z; that is a function of
-//! ray and vertex alone, so triangles sharing a vertex see the same point. An edge is then decided
-//! by comparing two rounded products, which is exact and antisymmetric in its end points: one of
-//! two neighbours, or both, contains the ray. The paper's recomputation in double precision for
-//! products that are equal after rounding is not needed: equality counts as inside, for both.
-//!
-//! Everything up to the early way out is the hot path; the rest runs only for likely hits.
+//! A test is written once and serves both arrangements: one ray against the triangles of a packet,
+//! a triangle a lane, and a packet of rays against one triangle, a ray a lane.
 
-use crate::bounds::{PAD_COORDINATE, PAD_EXTENT};
 use crate::bvh::TrianglePacket;
-use crate::slab::SlabRay;
-use crate::{Culling, Lanes, Ray};
+use crate::columns::Columns;
+use crate::{Lanes, Ray};
 
-/// A ray prepared for triangle tests.
-pub(crate) struct ShearRay<S: Lanes<N>, const N: usize> {
-    /// The axes that become x, y and z; z is the direction's greatest.
-    axes: [usize; 3],
+/// A triangle a lane.
+pub trait Triangles<S: Lanes<W>, const W: usize> {
+    /// One coordinate of one corner.
+    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float;
+    /// The corners in one lane.
+    fn corners(&self, lane: usize) -> [[f32; 3]; 3];
+}
+
+impl<S: Lanes<W>, const W: usize> Triangles<S, W> for &TrianglePacket<W> {
+    #[inline(always)]
+    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
+        simd.load(&self.vertices[vertex % 3][axis % 3])
+    }
+
+    #[inline(always)]
+    fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
+        self.vertices.map(|vertex| vertex.map(|row| row[lane % W]))
+    }
+}
+
+/// The same triangle in every lane.
+pub(crate) struct OneTriangle<'a, const P: usize> {
+    pub(crate) packet: &'a TrianglePacket<P>,
+    pub(crate) lane: usize,
+}
+
+impl<S: Lanes<W>, const W: usize, const P: usize> Triangles<S, W> for OneTriangle<'_, P> {
+    #[inline(always)]
+    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
+        simd.splat(self.packet.vertices[vertex % 3][axis % 3][self.lane % P])
+    }
+
+    #[inline(always)]
+    fn corners(&self, _: usize) -> [[f32; 3]; 3] {
+        self.packet
+            .vertices
+            .map(|vertex| vertex.map(|row| row[self.lane % P]))
+    }
+}
+
+/// The order of the axes in which a ray runs mostly along the last one, with the winding kept.
+pub(crate) type Axes = [usize; 3];
+
+#[inline(always)]
+pub(crate) fn axes(ray: &Ray) -> Axes {
+    // `[greatest][negative]`. A table, because mispredicted branches would cost more than the test
+    // of a packet.
+    const ORDERS: [[Axes; 2]; 3] = [
+        [[1, 2, 0], [2, 1, 0]],
+        [[2, 0, 1], [0, 2, 1]],
+        [[0, 1, 2], [1, 0, 2]],
+    ];
+    let [x, y, z] = ray.dir.map(f32::abs);
+    let greatest = if (z >= x) & (z >= y) {
+        2
+    } else {
+        usize::from(y >= x)
+    };
+    ORDERS[greatest][usize::from(ray.dir[greatest] < 0.0)]
+}
+
+/// Rays with the same order of axes, prepared for triangle tests: a translation and a shear take
+/// each to the z axis.
+///
+/// S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+pub struct Shear<'a, S: Lanes<W>, const W: usize> {
+    axes: Axes,
     /// Origin, in that order.
     org: [S::Float; 3],
-    /// `dir.x / dir.z`, `dir.y / dir.z` and `1 / dir.z`.
-    shear: [S::Float; 3],
-    tmin: S::Float,
+    /// `dir.x / dir.z` and `dir.y / dir.z`.
+    slope: [S::Float; 2],
+    /// `1 / dir.z`.
+    pub(crate) inv_z: S::Float,
+    pub(crate) tmin: S::Float,
+    /// Where the rays are, and which of them is in which lane; of no use in the lanes left over.
+    rays: &'a [Ray],
+    members: &'a [u16],
 }
 
-/// Intersections with a packet.
-pub(crate) struct PacketHits<S: Lanes<N>, const N: usize> {
-    /// Lanes hit, and those hit from behind, as bits.
-    pub(crate) lanes: u32,
-    pub(crate) back: u32,
-    t: S::Float,
-    u: S::Float,
-    v: S::Float,
-}
-
-impl<S: Lanes<N>, const N: usize> ShearRay<S, N> {
+impl<'a, S: Lanes<W>, const W: usize> Shear<'a, S, W> {
+    /// One ray, in every lane.
     #[inline(always)]
-    pub(crate) fn new(simd: S, ray: &Ray, tmin: f32) -> ShearRay<S, N> {
-        let [x, y, z] = ray.dir.map(f32::abs);
-        // Two axes swap for negative directions to keep the winding.
-        let axes = match (z >= x && z >= y, y >= x) {
-            (true, _) if ray.dir[2] < 0.0 => [1, 0, 2],
-            (true, _) => [0, 1, 2],
-            (false, true) if ray.dir[1] < 0.0 => [0, 2, 1],
-            (false, true) => [2, 0, 1],
-            (false, false) if ray.dir[0] < 0.0 => [2, 1, 0],
-            (false, false) => [1, 2, 0],
-        };
+    pub(crate) fn of_ray(simd: S, ray: &'a Ray, tmin: f32) -> Shear<'a, S, W> {
+        let axes = axes(ray);
         let [kx, ky, kz] = axes;
-        ShearRay {
+        Shear {
             axes,
             org: [
                 simd.splat(ray.org[kx]),
                 simd.splat(ray.org[ky]),
                 simd.splat(ray.org[kz]),
             ],
-            shear: [
+            slope: [
                 simd.splat(ray.dir[kx] / ray.dir[kz]),
                 simd.splat(ray.dir[ky] / ray.dir[kz]),
-                simd.splat(1.0 / ray.dir[kz]),
             ],
+            inv_z: simd.splat(1.0 / ray.dir[kz]),
             tmin: simd.splat(tmin),
+            rays: std::slice::from_ref(ray),
+            members: &[0],
         }
     }
 
-    /// The triangles hit at a distance in `[tmin, tmax]`, from the sides that `culling` leaves.
-    /// (Marks of single triangles are the caller's business: see [`PacketHits::back`].)
+    /// A ray a lane, all with these axes: `members` of `rays`.
     #[inline(always)]
-    pub(crate) fn packet_hits(
+    pub(crate) fn of_rays(
+        simd: S,
+        columns: &Columns<W>,
+        rays: &'a [Ray],
+        members: &'a [u16],
+        axes: Axes,
+    ) -> Self {
+        let [kx, ky, kz] = axes;
+        let dir = axes.map(|axis| simd.load(&columns.dir[axis]));
+        Shear {
+            axes,
+            org: [
+                simd.load(&columns.org[kx]),
+                simd.load(&columns.org[ky]),
+                simd.load(&columns.org[kz]),
+            ],
+            slope: [simd.div(dir[0], dir[2]), simd.div(dir[1], dir[2])],
+            inv_z: simd.div(simd.splat(1.0), dir[2]),
+            tmin: simd.load(&columns.tmin),
+            rays,
+            members,
+        }
+    }
+
+    /// The ray in a lane.
+    #[inline(always)]
+    pub(crate) fn ray(&self, lane: usize) -> &'a Ray {
+        &self.rays[self.members[lane.min(self.members.len() - 1)] as usize]
+    }
+
+    /// A corner relative to the origin, in the order of the axes.
+    #[inline(always)]
+    pub(crate) fn relative(
         &self,
         simd: S,
-        packet: &TrianglePacket<N>,
-        slab: &SlabRay<S, N>,
-        tmax: S::Float,
-        culling: Culling,
-    ) -> Option<PacketHits<S, N>> {
-        let a = self.to_ray_space(simd, &packet.v0);
-        let b = self.to_ray_space(simd, &packet.v1);
-        let c = self.to_ray_space(simd, &packet.v2);
-
-        // Twice the signed areas opposite to each vertex are these products' differences.
-        let edges = [
-            (simd.mul(c[0], b[1]), simd.mul(c[1], b[0])),
-            (simd.mul(a[0], c[1]), simd.mul(a[1], c[0])),
-            (simd.mul(b[0], a[1]), simd.mul(b[1], a[0])),
-        ];
-        let [e0, e1, e2] = edges;
-        let front = simd.bits(simd.and(
-            simd.and(simd.le(e0.1, e0.0), simd.le(e1.1, e1.0)),
-            simd.le(e2.1, e2.0),
-        ));
-        let back = match culling {
-            Culling::Back => 0,
-            Culling::None | Culling::PerTriangle => simd.bits(simd.and(
-                simd.and(simd.le(e0.0, e0.1), simd.le(e1.0, e1.1)),
-                simd.le(e2.0, e2.1),
-            )),
+        triangles: &impl Triangles<S, W>,
+        vertex: usize,
+    ) -> [S::Float; 3] {
+        let relative = |axis: usize| {
+            let corner = triangles.corner(simd, vertex, self.axes[axis]);
+            simd.sub(corner, self.org[axis])
         };
-        let inside = front | back;
-        if inside == 0 {
-            return None;
-        }
-
-        let weights = edges.map(|(p, q)| simd.sub(p, q));
-        let determinant = simd.add(simd.add(weights[0], weights[1]), weights[2]);
-        // Normalised before they meet the distances: products of three lengths underflow early.
-        let [w, u, v] = weights.map(|weight| simd.div(weight, determinant));
-        let depth = |vertex: [S::Float; 3]| simd.mul(vertex[2], self.shear[2]);
-        let t = simd.add(
-            simd.add(simd.mul(w, depth(a)), simd.mul(u, depth(b))),
-            simd.mul(v, depth(c)),
-        );
-        let size = simd.abs(determinant);
-        let sound = simd.and(
-            simd.and(
-                simd.lt(simd.splat(0.0), size),
-                simd.lt(size, simd.splat(f32::INFINITY)),
-            ),
-            simd.le(t, t),
-        );
-
-        // Inside the triangle's padded box, and t with it: `bounds.rs` says why.
-        let (lo, hi) = padded_bounds(simd, packet);
-        let (entry, exit) = slab.box_interval(simd, lo, hi);
-        let t = simd.min_number(simd.max_number(t, entry), exit);
-        let within = simd.and(
-            simd.and(simd.le(entry, exit), simd.le(self.tmin, t)),
-            simd.le(t, tmax),
-        );
-        let lanes = inside & simd.bits(simd.and(sound, within));
-        (lanes != 0).then_some(PacketHits {
-            lanes,
-            back,
-            t,
-            u,
-            v,
-        })
+        [relative(0), relative(1), relative(2)]
     }
 
-    /// Vertices relative to the origin, sheared so that the ray is the z axis. z is not yet
-    /// scaled.
+    /// A corner in the space where the ray is the z axis; z is not scaled. Every operation rounds.
     #[inline(always)]
-    fn to_ray_space(&self, simd: S, vertex: &[[f32; N]; 3]) -> [S::Float; 3] {
-        let relative = |axis: usize| {
-            // SAFETY: `axes` is a permutation of 0, 1 and 2, and private to this module.
-            let row = unsafe { vertex.get_unchecked(self.axes[axis]) };
-            simd.sub(simd.load(row), self.org[axis])
-        };
-        let z = relative(2);
+    pub(crate) fn sheared(
+        &self,
+        simd: S,
+        triangles: &impl Triangles<S, W>,
+        vertex: usize,
+    ) -> [S::Float; 3] {
+        let [x, y, z] = self.relative(simd, triangles, vertex);
         [
-            simd.sub(relative(0), simd.mul(self.shear[0], z)),
-            simd.sub(relative(1), simd.mul(self.shear[1], z)),
+            simd.sub(x, simd.mul(self.slope[0], z)),
+            simd.sub(y, simd.mul(self.slope[1], z)),
+            z,
+        ]
+    }
+
+    /// As [`sheared`](Shear::sheared), negated in x and y, and fused.
+    #[inline(always)]
+    pub(crate) fn sheared_fast(
+        &self,
+        simd: S,
+        triangles: &impl Triangles<S, W>,
+        vertex: usize,
+    ) -> [S::Float; 3] {
+        let [x, y, z] = self.relative(simd, triangles, vertex);
+        [
+            simd.mul_sub(self.slope[0], z, x),
+            simd.mul_sub(self.slope[1], z, y),
             z,
         ]
     }
 }
 
-impl<S: Lanes<N>, const N: usize> PacketHits<S, N> {
-    /// `(t, u, v)` of every lane; meaningful for the lanes hit.
+/// Which lanes hit, and where.
+pub struct LaneHits<S: Lanes<W>, const W: usize> {
+    /// Lanes that hit, as bits.
+    pub(crate) lanes: u32,
+    /// Lanes hit from behind, as bits; meaningful for those that hit.
+    pub(crate) back: u32,
+    pub(crate) t: S::Float,
+    pub(crate) u: S::Float,
+    pub(crate) v: S::Float,
+}
+
+impl<S: Lanes<W>, const W: usize> LaneHits<S, W> {
+    /// Only the hits at a distance in `[tmin, tmax]`, if there are any.
     #[inline(always)]
-    pub(crate) fn store(&self, simd: S) -> ([f32; N], [f32; N], [f32; N]) {
-        let (mut t, mut u, mut v) = ([0.0; N], [0.0; N], [0.0; N]);
+    pub(crate) fn within(mut self, simd: S, tmin: S::Float, tmax: S::Float) -> Option<Self> {
+        let within = simd.and(simd.le(tmin, self.t), simd.le(self.t, tmax));
+        self.lanes &= simd.bits(within);
+        (self.lanes != 0).then_some(self)
+    }
+
+    /// Replaces `[t, u, v]` in some lanes.
+    #[inline(always)]
+    pub(crate) fn mend(&mut self, simd: S, lanes: u32, hit: impl Fn(usize) -> [f32; 3]) {
+        let (mut t, mut u, mut v) = self.store(simd);
+        for lane in (0..W).filter(|lane| lanes >> lane & 1 == 1) {
+            [t[lane], u[lane], v[lane]] = hit(lane);
+        }
+        (self.t, self.u, self.v) = (simd.load(&t), simd.load(&u), simd.load(&v));
+    }
+
+    /// `(t, u, v)` of every lane; meaningful for the lanes that hit.
+    #[inline(always)]
+    pub(crate) fn store(&self, simd: S) -> ([f32; W], [f32; W], [f32; W]) {
+        let (mut t, mut u, mut v) = ([0.0; W], [0.0; W], [0.0; W]);
         simd.store(self.t, &mut t);
         simd.store(self.u, &mut u);
         simd.store(self.v, &mut v);
         (t, u, v)
     }
-}
-
-/// [`crate::Bounds::padded`] of each triangle's bounds, with the same roundings.
-#[inline(always)]
-fn padded_bounds<S: Lanes<N>, const N: usize>(
-    simd: S,
-    packet: &TrianglePacket<N>,
-) -> ([S::Float; 3], [S::Float; 3]) {
-    let (mut lo, mut hi) = ([simd.splat(0.0); 3], [simd.splat(0.0); 3]);
-    for axis in 0..3 {
-        let a = simd.load(&packet.v0[axis]);
-        let b = simd.load(&packet.v1[axis]);
-        let c = simd.load(&packet.v2[axis]);
-        lo[axis] = simd.min_number(simd.min_number(a, b), c);
-        hi[axis] = simd.max_number(simd.max_number(a, b), c);
-    }
-    let extent = |axis: usize| simd.sub(hi[axis], lo[axis]);
-    let greatest = simd.max_number(simd.max_number(extent(0), extent(1)), extent(2));
-    let pad_extent = simd.mul(greatest, simd.splat(PAD_EXTENT));
-    for axis in 0..3 {
-        let pad = |x: S::Float| {
-            simd.add(
-                pad_extent,
-                simd.mul(simd.abs(x), simd.splat(PAD_COORDINATE)),
-            )
-        };
-        (lo[axis], hi[axis]) = (
-            simd.sub(lo[axis], pad(lo[axis])),
-            simd.add(hi[axis], pad(hi[axis])),
-        );
-    }
-    (lo, hi)
 }

@@ -66,9 +66,9 @@ impl fmt::Display for InvalidBvh {
 impl std::error::Error for InvalidBvh {}
 
 /// One pass suffices because parents precede their children.
-pub(crate) fn check_structure<const N: usize>(
+pub(crate) fn check_structure<const N: usize, const P: usize>(
     nodes: &[Node<N>],
-    packets: &[TrianglePacket<N>],
+    packets: &[TrianglePacket<P>],
 ) -> Result<(), InvalidBvh> {
     if nodes.is_empty() {
         return Err(InvalidBvh::NoNodes);

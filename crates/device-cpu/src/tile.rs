@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use residual_bvh::{BvhView, Lanes as BvhLanes, Ray, any_hit, closest_hit};
+use residual_bvh::{BvhView, Lanes as BvhLanes, Ray, Watertight, any_hit, closest_hit};
 use residual_render::domain::{Buffer, Buffers, Lanes};
 use residual_render::film::TileRect;
 use residual_render::sampler::SampleKey;
@@ -153,7 +153,7 @@ where
             }
             // Closest hits.
             for i in 0..paths.len() {
-                let hit = closest_hit(simd, bvh, &paths.ray(i), scene);
+                let hit = closest_hit(simd, Watertight, bvh, &paths.ray(i), scene);
                 let program = hit
                     .is_hit()
                     .then(|| buffers.word(Buffer::TrianglePrograms, hit.prim));
@@ -198,7 +198,7 @@ where
 
             // Occlusion.
             for i in 0..shadows.len() {
-                if !any_hit(simd, bvh, &shadows.ray(i), scene) {
+                if !any_hit(simd, Watertight, bvh, &shadows.ray(i), scene) {
                     shadows.add_to(i, radiance);
                 }
             }

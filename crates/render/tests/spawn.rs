@@ -1,7 +1,7 @@
 //! Rays that leave surfaces: no self-hit (hard case O-01) in return for the smallest gap (O-02).
 
 use fearless_simd::{Level, dispatch};
-use residual_bvh::{AllHits, BuildQuality, Bvh, Ray, any_hit, build, closest_hit};
+use residual_bvh::{AllHits, BuildQuality, Bvh, Ray, Watertight, any_hit, build, closest_hit};
 use residual_render::domain::{Scalar, Uint};
 use residual_render::math::vec3::vec3;
 use residual_render::surface::{Attributes, Hit, Surface};
@@ -20,7 +20,7 @@ fn ray(org: [f32; 3], dir: [f32; 3]) -> Ray {
 }
 
 fn hits(bvh: &Bvh<4>, ray: &Ray) -> bool {
-    dispatch!(Level::new(), simd => any_hit(simd, bvh.view(), ray, &AllHits))
+    dispatch!(Level::new(), simd => any_hit(simd, Watertight, bvh.view(), ray, &AllHits))
 }
 
 /// A triangle of a size from 1e-3 to 1e3 at an offset from 0 to 1e6 from the origin.
@@ -46,7 +46,7 @@ fn self_hits(triangles: usize, scale: f32) -> (usize, usize) {
     for _ in 0..triangles {
         let triangle = random_triangle(&mut rng);
         let data = scene(&[triangle]);
-        let bvh = build::<4>(
+        let bvh = build::<4, 4>(
             &data.positions(),
             &data.triangles(),
             None,
@@ -125,7 +125,7 @@ fn gaps_are_seen() {
         let ulp = height.abs().next_up() - height.abs();
         let resolved = |gap: u32| {
             let data = sheets(height, gap as f32 * ulp);
-            let bvh = build::<4>(
+            let bvh = build::<4, 4>(
                 &data.positions(),
                 &data.triangles(),
                 None,
@@ -140,7 +140,7 @@ fn gaps_are_seen() {
                 let surface = Surface::new(d, Attributes::default(), &hit, vec3(0.0, 0.0, -1.0));
                 let [x, y, z] = [0.1 * rng.unit(), 0.1 * rng.unit(), 1.0];
                 let org = surface.spawn(d, vec3(x, y, z));
-                let found = dispatch!(Level::new(), simd => closest_hit(simd, bvh.view(), &ray(array(org), [x, y, z]), &AllHits));
+                let found = dispatch!(Level::new(), simd => closest_hit(simd, Watertight, bvh.view(), &ray(array(org), [x, y, z]), &AllHits));
                 found.prim == 1
             })
         };

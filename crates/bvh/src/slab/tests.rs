@@ -3,7 +3,7 @@
 
 use fearless_simd::{Level, dispatch};
 
-use super::SlabRay;
+use super::Slab;
 use crate::bvh::{Child, Node};
 use crate::{Bounds, Lanes, Ray};
 
@@ -22,12 +22,12 @@ fn touched(ray: &Ray, boxes: &[Bounds; 4]) -> u32 {
 fn touched_in<S: Lanes<N>, const N: usize>(simd: S, ray: &Ray, boxes: &[Bounds; 4]) -> u32 {
     let mut node = Node::<N>::VACANT;
     for (slot, bounds) in boxes.iter().enumerate() {
-        node.set_child(slot, bounds, Child::VACANT);
+        // As in every hierarchy, boxes are padded.
+        node.set_child(slot, &bounds.padded(1.0), Child::VACANT);
     }
     let (tmin, tmax) = ray.interval();
-    let slab = SlabRay::new(simd, ray, tmin);
-    let (entry, exit) = slab.node_interval(simd, &node, simd.splat(tmax));
-    simd.bits(simd.le(entry, exit))
+    let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
+    slab.touched_children(simd, &node, tmax).0
 }
 
 struct Random(u64);
@@ -121,7 +121,8 @@ fn exact_touches_are_found() {
             let found = found >> slot & 1 == 1;
             assert!(found || !exact, "lost: {ray:?} {lo:?} {hi:?}");
             touches += u32::from(exact);
-            extra += u32::from(found && !exact);
+            // Far from the origin the slack is of the size of these small boxes.
+            extra += u32::from(found && !exact && offset < 1 << 18);
         }
         assert_eq!(found >> 4, 0, "vacant slots are never entered");
     }

@@ -80,20 +80,44 @@ fn intersect(ray: &Ray, vertices: &[[f32; 3]; 3], one_side: bool) -> Option<[f32
         (a[0] * c[1], a[1] * c[0]),
         (b[0] * a[1], b[1] * a[0]),
     ];
-    let front = products.iter().all(|(p, q)| p >= q);
-    let back = products.iter().all(|(p, q)| p <= q);
+    let weights = products.map(|(p, q)| p - q);
+    let front = weights.iter().all(|&weight| weight >= 0.0);
+    let back = weights.iter().all(|&weight| weight <= 0.0);
     if !(front || back && !one_side) {
         return None;
     }
-    let [wa, wb, wc] = products.map(|(p, q)| p - q);
+    let [wa, wb, wc] = weights;
     let determinant = wa + wb + wc;
-    let [w, u, v] = [wa, wb, wc].map(|weight| weight / determinant);
-    let t = w * (a[2] * sz) + u * (b[2] * sz) + v * (c[2] * sz);
-    if determinant == 0.0 || !determinant.is_finite() || t.is_nan() {
-        return None;
-    }
+    let inv = 1.0 / determinant;
+    let [w, u, v] = [wa, wb, wc].map(|weight| weight * inv);
+    let t = (w * a[2] + u * b[2] + v * c[2]) * sz;
 
-    // The passage through the padded box.
+    let sizes = products.map(|(p, q)| p.abs() + q.abs());
+    let [t, u, v] = if (sizes[0] + sizes[1] + sizes[2]) + 1e-30 < determinant.abs() * 32.0 {
+        [t, u, v]
+    } else {
+        ill_conditioned(ray, vertices)?
+    };
+    let tmin = if ray.tmin > 0.0 { ray.tmin } else { 0.0 };
+    (tmin <= t && t <= ray.tmax && t <= f32::MAX).then_some([t, u, v])
+}
+
+/// The hit in `f64`, its distance moved into the passage through the padded box.
+fn ill_conditioned(ray: &Ray, vertices: &[[f32; 3]; 3]) -> Option<[f32; 3]> {
+    let [o, d] = [ray.org, ray.dir].map(|p| p.map(f64::from));
+    let [a, b, c] = vertices.map(|p| [0, 1, 2].map(|axis| f64::from(p[axis]) - o[axis]));
+    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    let volume = |p: [f64; 3], q: [f64; 3]| {
+        let minor = |i: usize, j: usize| p[i] * q[j] - q[i] * p[j];
+        dot([minor(1, 2), minor(2, 0), minor(0, 1)], d)
+    };
+    let volumes = [volume(c, b), volume(a, c), volume(b, a)];
+    let sign = (volumes[0] + volumes[1] + volumes[2]).signum();
+    let [w, u, v] = volumes.map(|x| (sign * x).max(0.0));
+    let sum = w + u + v;
+    let depth = (w * dot(a, d) + u * dot(b, d) + v * dot(c, d)) / dot(d, d);
+    let [t, u, v] = [depth / sum, u / sum, v / sum].map(|x| x as f32);
+
     let axis_range = |axis: usize| {
         let [p, q, r] = [0, 1, 2].map(|i| vertices[i][axis]);
         (p.min(q).min(r), p.max(q).max(r))
@@ -102,10 +126,9 @@ fn intersect(ray: &Ray, vertices: &[[f32; 3]; 3], one_side: bool) -> Option<[f32
         .map(|axis| axis_range(axis).1 - axis_range(axis).0)
         .fold(0.0, f32::max);
     let (mut entry, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
-    let tmin = if ray.tmin > 0.0 { ray.tmin } else { 0.0 };
     for axis in 0..3 {
         let (lo, hi) = axis_range(axis);
-        let pad = |x: f32| extent * 2f32.powi(-22) + x.abs() * f32::EPSILON;
+        let pad = |x: f32| extent * 2f32.powi(-16) + x.abs() * f32::EPSILON;
         let inv = 1.0 / ray.dir[axis];
         let planes = [lo - pad(lo), hi + pad(hi)];
         let [near, far] = if inv < 0.0 {
@@ -114,10 +137,11 @@ fn intersect(ray: &Ray, vertices: &[[f32; 3]; 3], one_side: bool) -> Option<[f32
             planes
         };
         // f32::max and min drop NaN.
-        entry = entry.max((near - ray.org[axis]) * (inv * (1.0 - 2f32.powi(-20))));
-        exit = exit.min((far - ray.org[axis]) * (inv * (1.0 + 2f32.powi(-20))));
+        entry = entry.max((near - ray.org[axis]) * inv * (1.0 - 2f32.powi(-21)));
+        exit = exit.min((far - ray.org[axis]) * inv * (1.0 + 2f32.powi(-21)));
     }
+    let finite = t.is_finite();
     let t = if t > entry { t } else { entry };
     let t = if t < exit { t } else { exit };
-    (entry <= exit && tmin <= t && t <= ray.tmax && t <= f32::MAX).then_some([t, u, v])
+    (entry <= exit && finite).then_some([t, u, v])
 }

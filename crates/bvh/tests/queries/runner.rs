@@ -2,8 +2,8 @@
 //! width and instruction set against it.
 use fearless_simd::{Level, Simd};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, FrontHits, Hit, HitFilter, MarkedHits, Ray, any_hit, build,
-    closest_hit,
+    AllHits, BuildQuality, Bvh, FrontHits, Hit, HitFilter, MarkedHits, Ray, Watertight, any_hit,
+    build, closest_hit,
 };
 
 use crate::mesh::Mesh;
@@ -93,14 +93,14 @@ impl Widths {
     fn answers<S: Simd, F: HitFilter>(&self, simd: S, ray: &Ray, filter: &F) -> [Hit; 3] {
         let (w4, w8, w16) = (self.w4.view(), self.w8.view(), self.w16.view());
         let hits = [
-            closest_hit(simd, w4, ray, filter),
-            closest_hit(simd, w8, ray, filter),
-            closest_hit(simd, w16, ray, filter),
+            closest_hit(simd, Watertight, w4, ray, filter),
+            closest_hit(simd, Watertight, w8, ray, filter),
+            closest_hit(simd, Watertight, w16, ray, filter),
         ];
         let any = [
-            any_hit(simd, w4, ray, filter),
-            any_hit(simd, w8, ray, filter),
-            any_hit(simd, w16, ray, filter),
+            any_hit(simd, Watertight, w4, ray, filter),
+            any_hit(simd, Watertight, w8, ray, filter),
+            any_hit(simd, Watertight, w16, ray, filter),
         ];
         assert_eq!(
             hits.map(|hit| hit.is_hit()),

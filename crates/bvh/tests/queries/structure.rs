@@ -21,7 +21,7 @@ fn everything_is_in_the_tree() {
     mesh.push([[-50.0, -2.0, -50.0], [50.0, -2.0, -50.0], [0.0, 2.0, 50.0]]);
     for quality in [BuildQuality::Fast, BuildQuality::Medium, BuildQuality::Best] {
         let bvh = build8(&mesh, quality);
-        BvhView::new(bvh.nodes(), bvh.packets()).expect("a sound tree");
+        BvhView::<8, 8>::new(bvh.nodes(), bvh.packets()).expect("a sound tree");
         let ids = bvh.packets().iter().flat_map(|packet| packet.prim_ids);
         let found: BTreeSet<u32> = ids.clone().filter(|&id| id != u32::MAX).collect();
         assert!(found.into_iter().eq(0..mesh.triangles.len() as u32));
@@ -121,7 +121,10 @@ fn broken_structures_are_refused() {
     let refuse = |node: usize, slot: usize, child: u32, expected: InvalidBvh| {
         let mut broken = nodes.to_vec();
         broken[node].children[slot] = child;
-        assert_eq!(BvhView::new(&broken, bvh.packets()).unwrap_err(), expected);
+        assert_eq!(
+            BvhView::<8, 8>::new(&broken, bvh.packets()).unwrap_err(),
+            expected
+        );
     };
     let bad_child = InvalidBvh::BadChild {
         node: 0,
@@ -153,7 +156,7 @@ fn broken_structures_are_refused() {
     for value in [0.0, f32::NAN] {
         let mut broken = nodes.to_vec();
         broken[0].bounds[1][inner_slot] = value;
-        let error = BvhView::new(&broken, bvh.packets()).unwrap_err();
+        let error = BvhView::<8, 8>::new(&broken, bvh.packets()).unwrap_err();
         assert_eq!(error, bad_bounds);
         assert!(error.to_string().contains("box"));
     }
@@ -178,23 +181,23 @@ fn shared_and_deep_nodes_are_refused() {
         })
         .collect();
     assert_eq!(
-        BvhView::new(&chain, &[]).unwrap_err(),
+        BvhView::<8, 8>::new(&chain, &[]).unwrap_err(),
         InvalidBvh::TooDeep { node: 64 }
     );
     let mut fits = chain[..64].to_vec();
     fits[63] = chain[64];
-    BvhView::new(&fits, &[]).expect("64 levels are allowed");
+    BvhView::<8, 8>::new(&fits, &[]).expect("64 levels are allowed");
 
     fits[0].children[1] = 2;
     assert_eq!(
-        BvhView::new(&fits, &[]).unwrap_err(),
+        BvhView::<8, 8>::new(&fits, &[]).unwrap_err(),
         InvalidBvh::BadBounds { node: 0, slot: 1 }
     );
     for row in 0..6 {
         fits[0].bounds[row][1] = fits[0].bounds[row][0];
     }
     assert_eq!(
-        BvhView::new(&fits, &[]).unwrap_err(),
+        BvhView::<8, 8>::new(&fits, &[]).unwrap_err(),
         InvalidBvh::BadChild { node: 1, slot: 0 }
     );
 }

@@ -1,0 +1,47 @@
+//! The shear test with fused operations throughout.
+
+use super::{Precision, sealed::Test, sides};
+use crate::triangle::{LaneHits, Shear, Triangles};
+use crate::{Culling, Lanes};
+
+/// The fastest test. A ray aimed at an edge may slip between the two triangles that share it, and
+/// distances to triangles seen edge-on may be off by more than roundings. Answers may differ
+/// between instruction sets in the last places.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Fast;
+
+impl Precision for Fast {}
+
+impl Test for Fast {
+    #[inline(always)]
+    fn test<S: Lanes<W>, const W: usize>(
+        self,
+        simd: S,
+        rays: &Shear<'_, S, W>,
+        triangles: impl Triangles<S, W>,
+        tmax: S::Float,
+        culling: Culling,
+    ) -> Option<LaneHits<S, W>> {
+        let a = rays.sheared_fast(simd, &triangles, 0);
+        let b = rays.sheared_fast(simd, &triangles, 1);
+        let c = rays.sheared_fast(simd, &triangles, 2);
+        let edge =
+            |p: [S::Float; 3], q: [S::Float; 3]| simd.mul_sub(p[0], q[1], simd.mul(p[1], q[0]));
+        let [w, u, v] = [edge(c, b), edge(a, c), edge(b, a)];
+
+        let inside = sides(simd, [w, u, v], culling);
+        if inside.lanes == 0 {
+            return None;
+        }
+        let inv = simd.div(simd.splat(1.0), simd.add(simd.add(w, u), v));
+        let depth = simd.mul_add(v, c[2], simd.mul_add(u, b[2], simd.mul(w, a[2])));
+        let hits = LaneHits {
+            lanes: inside.lanes,
+            back: inside.back,
+            t: simd.mul(simd.mul(depth, inv), rays.inv_z),
+            u: simd.mul(u, inv),
+            v: simd.mul(v, inv),
+        };
+        hits.within(simd, rays.tmin, tmax)
+    }
+}

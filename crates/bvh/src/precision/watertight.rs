@@ -1,0 +1,114 @@
+//! The shear test as its authors meant it, without its double-precision fallback.
+//!
+//! Moving the vertices to the ray's origin and shearing them is a function of ray and vertex
+//! alone, so triangles sharing a vertex see the same point. An edge is then decided by comparing
+//! two rounded products, which is exact and antisymmetric in its end points: one of two
+//! neighbours, or both, contains the ray. The paper's recomputation in double precision for
+//! products that are equal after rounding is not needed: equality counts as inside, for both.
+
+use glam::DVec3;
+
+use super::{Precision, sealed::Test, sides};
+use crate::bounds::Bounds;
+use crate::triangle::{LaneHits, Shear, Triangles};
+use crate::{Culling, Lanes, Ray};
+
+/// Closed meshes have no holes: what a ray misses on one side of an edge, it hits on the other.
+/// The same bits on every instruction set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Watertight;
+
+impl Precision for Watertight {}
+
+/// How many times larger than twice the triangle's area the products may be whose differences are
+/// the areas of its parts, until the hit counts as ill-conditioned: a triangle seen edge-on.
+/// `bounds.rs` says how the boxes' padding follows from it.
+pub(crate) const CONDITION: f32 = 32.0;
+/// Areas near the underflow are not to be trusted either.
+const SMALLEST: f32 = 1e-30;
+
+impl Test for Watertight {
+    #[inline(always)]
+    fn test<S: Lanes<W>, const W: usize>(
+        self,
+        simd: S,
+        rays: &Shear<'_, S, W>,
+        triangles: impl Triangles<S, W>,
+        tmax: S::Float,
+        culling: Culling,
+    ) -> Option<LaneHits<S, W>> {
+        let a = rays.sheared(simd, &triangles, 0);
+        let b = rays.sheared(simd, &triangles, 1);
+        let c = rays.sheared(simd, &triangles, 2);
+
+        // Twice the signed areas opposite to each vertex. With gradual underflow a difference has
+        // the sign of the comparison; flushed to zero it counts as inside, for both neighbours.
+        let products =
+            |p: [S::Float; 3], q: [S::Float; 3]| (simd.mul(p[0], q[1]), simd.mul(p[1], q[0]));
+        let edges = [products(c, b), products(a, c), products(b, a)];
+        let [w, u, v] = edges.map(|(p, q)| simd.sub(p, q));
+        let inside = sides(simd, [w, u, v], culling);
+        if inside.lanes == 0 {
+            return None;
+        }
+
+        // Everything from here on is for likely hits.
+        let determinant = simd.add(simd.add(w, u), v);
+        let inv = simd.div(simd.splat(1.0), determinant);
+        let [w, u, v] = [w, u, v].map(|weight| simd.mul(weight, inv));
+        let depth = simd.add(
+            simd.add(simd.mul(w, a[2]), simd.mul(u, b[2])),
+            simd.mul(v, c[2]),
+        );
+        let mut hits = LaneHits {
+            lanes: inside.lanes,
+            back: inside.back,
+            t: simd.mul(depth, rays.inv_z),
+            u,
+            v,
+        };
+
+        let size = |(p, q): (S::Float, S::Float)| simd.add(simd.abs(p), simd.abs(q));
+        let sizes = simd.add(simd.add(size(edges[0]), size(edges[1])), size(edges[2]));
+        let well = simd.lt(
+            simd.add(sizes, simd.splat(SMALLEST)),
+            simd.mul(simd.abs(determinant), simd.splat(CONDITION)),
+        );
+        let ill = inside.lanes & !simd.bits(well);
+        if ill != 0 {
+            hits.mend(simd, ill, |lane| {
+                ill_conditioned_hit(rays.ray(lane), &triangles.corners(lane))
+            });
+        }
+        hits.within(simd, rays.tmin, tmax)
+    }
+}
+
+/// `[t, u, v]` of a ray that passes inside the triangle, when `f32` cannot say where: computed in
+/// `f64`, the distance then moved to where the ray passes through the triangle's padded box. NaN
+/// if it is nowhere, or beside the box.
+#[cold]
+#[inline(never)]
+fn ill_conditioned_hit(ray: &Ray, corners: &[[f32; 3]; 3]) -> [f32; 3] {
+    let (entry, exit) = Bounds::of_padded_triangle(corners).passage(ray);
+    let [t, u, v] = line_meets_plane(ray, corners);
+    if t.is_finite() && entry <= exit {
+        [t.max(entry).min(exit), u, v]
+    } else {
+        [f32::NAN; 3]
+    }
+}
+
+/// `[t, u, v]` of a line that passes inside the triangle, or at most by a rounding outside, in
+/// `f64`; not finite if it lies in the triangle's plane.
+pub(crate) fn line_meets_plane(ray: &Ray, corners: &[[f32; 3]; 3]) -> [f32; 3] {
+    let dir = DVec3::from(ray.dir.map(f64::from));
+    let org = DVec3::from(ray.org.map(f64::from));
+    let [a, b, c] = corners.map(|corner| DVec3::from(corner.map(f64::from)) - org);
+    let weights = [c.cross(b), a.cross(c), b.cross(a)].map(|normal| normal.dot(dir));
+    let side = weights.iter().sum::<f64>().signum();
+    let [w, u, v] = weights.map(|weight| (side * weight).max(0.0));
+    let sum = w + u + v;
+    let depth = (w * a.dot(dir) + u * b.dot(dir) + v * c.dot(dir)) / dir.length_squared();
+    [depth / sum, u / sum, v / sum].map(|x| x as f32)
+}
