@@ -47,12 +47,12 @@ fn traversal(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(set.kind.to_string());
         group.throughput(Throughput::Elements(set.rays.len() as u64));
         for (name, contender) in &contenders {
-            let mut prepared = contender.prepare(&set);
+            let mut prepared = contender.prepare(set.kind.query());
             group.bench_function(name, |bencher| {
                 bencher.iter_custom(|count| {
                     let mut total = Duration::ZERO;
                     for _ in 0..count {
-                        prepared.reset();
+                        prepared.load(&set.rays);
                         let start = Instant::now();
                         prepared.run();
                         total += start.elapsed();

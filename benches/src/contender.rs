@@ -2,21 +2,21 @@
 
 use residual_bvh::{Hit, Ray};
 
-use crate::rays::{Query, RaySet};
+use crate::rays::Query;
 
 /// A tracer with its hierarchy.
 pub trait Contender {
-    /// Everything that may be done with a set of rays outside the clock.
-    fn prepare<'a>(&'a self, set: &'a RaySet) -> Box<dyn Prepared + 'a>;
+    /// Makes room for rays and hits.
+    fn prepare(&self, query: Query) -> Box<dyn Prepared + '_>;
 }
 
-/// A tracer with rays and room for the hits.
+/// A tracer with a batch of rays and room for the hits.
 pub trait Prepared {
-    /// Undoes what the last run did to the rays; not measured.
-    fn reset(&mut self);
-    /// Traces all rays once; measured.
+    /// Takes a batch of rays, laid out as the tracer likes them; not measured.
+    fn load(&mut self, rays: &[Ray]);
+    /// Traces the batch, once after each [`load`](Prepared::load); measured.
     fn run(&mut self);
-    /// How many rays hit something in the last run.
+    /// How many rays of the batch hit something.
     fn hits(&self) -> usize;
 }
 
@@ -40,54 +40,46 @@ impl Stream {
 }
 
 impl Contender for Stream {
-    fn prepare<'a>(&'a self, set: &'a RaySet) -> Box<dyn Prepared + 'a> {
-        match set.kind.query() {
-            Query::Closest => Box::new(Closest {
+    fn prepare(&self, query: Query) -> Box<dyn Prepared + '_> {
+        match query {
+            Query::Closest => Box::new(Batch {
                 trace: &*self.closest,
-                rays: &set.rays,
-                hits: vec![Hit::miss(0.0); set.rays.len()],
+                rays: Vec::new(),
+                answers: Vec::new(),
+                before: Hit::miss(0.0),
+                is_hit: Hit::is_hit,
             }),
-            Query::Any => Box::new(Any {
+            Query::Any => Box::new(Batch {
                 trace: &*self.any,
-                rays: &set.rays,
-                occluded: vec![false; set.rays.len()],
+                rays: Vec::new(),
+                answers: Vec::new(),
+                before: false,
+                is_hit: |&occluded| occluded,
             }),
         }
     }
 }
 
-struct Closest<'a> {
-    trace: &'a dyn Fn(&[Ray], &mut [Hit]),
-    rays: &'a [Ray],
-    hits: Vec<Hit>,
+struct Batch<'a, T> {
+    trace: &'a dyn Fn(&[Ray], &mut [T]),
+    rays: Vec<Ray>,
+    answers: Vec<T>,
+    before: T,
+    is_hit: fn(&T) -> bool,
 }
 
-impl Prepared for Closest<'_> {
-    fn reset(&mut self) {
-        self.hits.fill(Hit::miss(0.0));
+impl<T: Copy> Prepared for Batch<'_, T> {
+    fn load(&mut self, rays: &[Ray]) {
+        self.rays.clear();
+        self.rays.extend_from_slice(rays);
+        self.answers.clear();
+        self.answers.resize(rays.len(), self.before);
     }
     fn run(&mut self) {
-        (self.trace)(self.rays, &mut self.hits);
+        (self.trace)(&self.rays, &mut self.answers);
     }
     fn hits(&self) -> usize {
-        self.hits.iter().filter(|hit| hit.is_hit()).count()
-    }
-}
-
-struct Any<'a> {
-    trace: &'a dyn Fn(&[Ray], &mut [bool]),
-    rays: &'a [Ray],
-    occluded: Vec<bool>,
-}
-
-impl Prepared for Any<'_> {
-    fn reset(&mut self) {
-        self.occluded.fill(false);
-    }
-    fn run(&mut self) {
-        (self.trace)(self.rays, &mut self.occluded);
-    }
-    fn hits(&self) -> usize {
-        self.occluded.iter().filter(|&&occluded| occluded).count()
+        let is_hit = |answer: &&T| (self.is_hit)(answer);
+        self.answers.iter().filter(is_hit).count()
     }
 }

@@ -63,7 +63,7 @@ impl Isa {
 
 impl fmt::Display for Isa {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        f.pad(match self {
             Isa::Avx512 => "avx512",
             Isa::Avx2 => "avx2",
             Isa::Other if cfg!(target_arch = "aarch64") => "neon",

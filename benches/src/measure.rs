@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use residual_bvh::Ray;
+
 use crate::contender::Prepared;
 
 /// A median with its interval of at least 95 % confidence.
@@ -46,40 +48,84 @@ impl Estimate {
     }
 }
 
-/// Seconds of every contender (outer) in every round (inner). A round runs all contenders once, each time beginning
-/// with another one; a first round, which warms caches and pages, does not count.
-pub fn interleaved(contenders: &mut [Box<dyn Prepared + '_>], rounds: usize) -> Vec<Vec<f64>> {
+/// What [`interleaved`] found out.
+pub struct Measured {
+    /// Of every contender (outer) in every round (inner).
+    pub seconds: Vec<Vec<f64>>,
+    /// How many rays hit something, for every contender.
+    pub hits: Vec<usize>,
+}
+
+/// Rays that are traced between two looks at the clock: few enough to stay in the second-level cache, where a renderer
+/// that works in tiles has them, too. Out of memory a call of `rtcIntersect1` that hits nothing takes twice as long.
+pub const BATCH: usize = 2048;
+
+/// Measures contenders. A round runs all of them once on all rays, each time beginning with another one; a first round,
+/// which warms caches and pages, does not count.
+pub fn interleaved(
+    contenders: &mut [Box<dyn Prepared + '_>],
+    rays: &[Ray],
+    rounds: usize,
+) -> Measured {
     let count = contenders.len();
     let mut seconds = vec![Vec::with_capacity(rounds); count];
+    let mut hits = vec![0; count];
     for round in 0..=rounds {
         for turn in 0..count {
             let index = (round + turn) % count;
             let contender = &mut contenders[index];
-            contender.reset();
-            let start = thread_time();
-            contender.run();
-            let time = thread_time() - start;
+            let mut time = Duration::ZERO;
+            hits[index] = 0;
+            for batch in rays.chunks(BATCH) {
+                contender.load(batch);
+                let start = thread_time();
+                contender.run();
+                time += thread_time() - start;
+                hits[index] += contender.hits();
+            }
             if round > 0 {
                 seconds[index].push(time.as_secs_f64());
             }
         }
     }
-    seconds
+    Measured { seconds, hits }
 }
 
 /// CPU time of this thread; wall-clock time where the system does not tell.
 pub fn thread_time() -> Duration {
     #[cfg(unix)]
     {
-        let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-        Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+        clock(rustix::time::ClockId::ThreadCPUTime)
     }
     #[cfg(not(unix))]
     {
-        use std::{sync::OnceLock, time::Instant};
-        static START: OnceLock<Instant> = OnceLock::new();
-        START.get_or_init(Instant::now).elapsed()
+        wall_clock()
     }
+}
+
+/// CPU time of all threads; wall-clock time where the system does not tell.
+pub fn process_time() -> Duration {
+    #[cfg(unix)]
+    {
+        clock(rustix::time::ClockId::ProcessCPUTime)
+    }
+    #[cfg(not(unix))]
+    {
+        wall_clock()
+    }
+}
+
+#[cfg(unix)]
+fn clock(id: rustix::time::ClockId) -> Duration {
+    let time = rustix::time::clock_gettime(id);
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
+#[cfg(not(unix))]
+fn wall_clock() -> Duration {
+    use std::{sync::OnceLock, time::Instant};
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed()
 }
 
 /// Keeps the thread on the processor it is on, until dropped; does nothing where the system has no such call.

@@ -13,7 +13,7 @@ use residual_bvh::{
 
 use crate::contender::Stream;
 use crate::isa::Isa;
-use crate::measure::thread_time;
+use crate::measure::process_time;
 use crate::on_isa;
 use crate::scene::Mesh;
 
@@ -42,7 +42,7 @@ impl Kernel {
 
 impl fmt::Display for Kernel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        f.pad(match self {
             Kernel::Single => "single",
             Kernel::Packet => "packet",
             Kernel::Hybrid => "hybrid",
@@ -64,7 +64,7 @@ pub enum Precision {
 
 impl fmt::Display for Precision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        f.pad(match self {
             Precision::Fast => "fast",
             Precision::Watertight => "watertight",
             Precision::Exact => "exact",
@@ -166,10 +166,10 @@ pub struct Tree<const N: usize> {
 
 /// Builds and times one hierarchy.
 pub fn build_tree<const N: usize>(mesh: &Mesh, quality: BuildQuality) -> Tree<N> {
-    let start = thread_time();
+    let start = process_time();
     let bvh = build::<N>(&mesh.positions, &mesh.triangles, None, quality);
     let cost = BuildCost {
-        seconds: (thread_time() - start).as_secs_f64(),
+        seconds: (process_time() - start).as_secs_f64(),
         sah_cost: f64::from(bvh.sah_cost()),
         memory_bytes: bvh.memory_bytes(),
     };

@@ -49,7 +49,7 @@ impl RayKind {
 
 impl fmt::Display for RayKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        f.pad(match self {
             RayKind::Primary => "primary",
             RayKind::Ao => "ao",
             RayKind::Diffuse => "diffuse",

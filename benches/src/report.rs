@@ -21,15 +21,15 @@ pub struct Label {
     pub precision: String,
 }
 
-/// How a contender compares with Embree.
+/// Embree's call that a contender is compared with.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// Embree's call and settings.
     pub mode: String,
     /// Its million rays a second.
     pub mrays_per_s: f64,
-    /// The contender's speed in Embree's, round by round.
-    pub ratio: Estimate,
+    /// The contender's speed in Embree's, round by round; `None` where the contender is this call.
+    pub ratio: Option<Estimate>,
 }
 
 /// One contender on one kind of rays.
@@ -78,6 +78,7 @@ impl Row {
     /// One object.
     pub fn to_json(&self) -> Value {
         let embree = self.embree.as_ref();
+        let ratio = embree.and_then(|embree| embree.ratio);
         json!({
             "kind": "trace",
             "scene": self.scene,
@@ -92,8 +93,8 @@ impl Row {
             "mrays_ci95": self.mrays_per_s.interval,
             "embree_mrays_per_s": embree.map(|embree| embree.mrays_per_s),
             "embree_mode": embree.map(|embree| &embree.mode),
-            "ratio": embree.map(|embree| embree.ratio.median),
-            "ratio_ci95": embree.map(|embree| embree.ratio.interval),
+            "ratio": ratio.map(|ratio| ratio.median),
+            "ratio_ci95": ratio.map(|ratio| ratio.interval),
             "isa": self.isa.to_string(),
             "compiled_for": Isa::compiled_for().to_string(),
         })
@@ -112,13 +113,11 @@ impl Row {
             _ => "-".to_owned(),
         };
         let mrays = interval(&self.mrays_per_s, 2);
-        let embree = self.embree.as_ref().map_or_else(
-            || "-".to_owned(),
-            |embree| {
-                let ratio = interval(&embree.ratio, 3);
-                format!("{ratio:<22} {:8.2}  {}", embree.mrays_per_s, embree.mode)
-            },
-        );
+        let embree = self.embree.as_ref().map_or_else(String::new, |embree| {
+            let ratio = embree.ratio.map(|ratio| interval(&ratio, 3));
+            let ratio = ratio.unwrap_or_default();
+            format!("{ratio:<22} {:8.2}  {}", embree.mrays_per_s, embree.mode)
+        });
         format!(
             "{:<8} {kernel:<14} {shape:>6} {packet:>5}  {precision:<10}  {mrays:<24} {embree}",
             self.rays
@@ -235,7 +234,7 @@ mod tests {
             embree: Some(Comparison {
                 mode: "rtcOccluded1 HIGH ROBUST".to_owned(),
                 mrays_per_s: 2.0,
-                ratio: estimate,
+                ratio: Some(estimate),
             }),
             isa: Isa::Avx2,
         };

@@ -8,7 +8,7 @@ use anyhow::{Result, ensure};
 use crate::contender::Contender;
 use crate::embree::{Embree, EmbreeContender, EmbreeScene, Mode, Quality};
 use crate::isa::Isa;
-use crate::measure::{Estimate, Pinned, interleaved};
+use crate::measure::{Estimate, Measured, Pinned, interleaved};
 use crate::ours::{self, Kernel, Precision, Trees};
 use crate::peers;
 use crate::rays::{Query, RayKind, RaySet, ray_sets};
@@ -212,11 +212,10 @@ fn peer(kernel: &str, contender: impl Contender + 'static) -> Entry {
 fn rows(scene: &Scene, set: &RaySet, entries: &[Entry], options: &Options) -> Vec<Row> {
     let mut prepared: Vec<_> = entries
         .iter()
-        .map(|entry| entry.contender.prepare(set))
+        .map(|entry| entry.contender.prepare(set.kind.query()))
         .collect();
-    let seconds = interleaved(&mut prepared, options.rounds);
-    for (entry, prepared) in entries.iter().zip(&prepared) {
-        let hits = prepared.hits();
+    let Measured { seconds, hits } = interleaved(&mut prepared, &set.rays, options.rounds);
+    for (entry, hits) in entries.iter().zip(hits) {
         if hits.abs_diff(set.hits) as f64 > 1e-3 * set.rays.len() as f64 {
             eprintln!(
                 "warning: {}, {} rays: {:?} hits {hits} times, the reference {}",
@@ -235,7 +234,9 @@ fn rows(scene: &Scene, set: &RaySet, entries: &[Entry], options: &Options) -> Ve
         Some(Comparison {
             mode: describe(entries[rival].embree.as_ref()?, set.kind.query()),
             mrays_per_s: speeds[rival].median,
-            ratio: Estimate::of(ratios.map(|(embree, own)| embree / own).collect()),
+            ratio: Some(Estimate::of(
+                ratios.map(|(embree, own)| embree / own).collect(),
+            )),
         })
     };
     let row = |(index, entry): (usize, &Entry)| Row {
@@ -248,7 +249,7 @@ fn rows(scene: &Scene, set: &RaySet, entries: &[Entry], options: &Options) -> Ve
             Some(call) => Some(Comparison {
                 mode: describe(call, set.kind.query()),
                 mrays_per_s: speeds[index].median,
-                ratio: Estimate::of(vec![1.0]),
+                ratio: None,
             }),
             None => compare(index),
         },

@@ -14,7 +14,7 @@ use std::rc::Rc;
 use libloading::Library;
 
 use crate::isa::Isa;
-use crate::measure::thread_time;
+use crate::measure::process_time;
 use crate::scene::Mesh;
 
 use ffi::{Api, Handle};
@@ -49,7 +49,7 @@ pub enum Quality {
 
 impl fmt::Display for Quality {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        f.pad(match self {
             Quality::Medium => "MEDIUM",
             Quality::High => "HIGH",
         })
@@ -134,11 +134,11 @@ impl Embree {
                 ffi::FORMAT_UINT3,
                 &mesh.triangles,
             );
-            let start = thread_time();
+            let start = process_time();
             (api.rtcCommitGeometry)(geometry);
             (api.rtcAttachGeometry)(scene, geometry);
             (api.rtcCommitScene)(scene);
-            let seconds = (thread_time() - start).as_secs_f64();
+            let seconds = (process_time() - start).as_secs_f64();
             (api.rtcReleaseGeometry)(geometry);
             let error = (api.rtcGetDeviceError)(device);
             assert_eq!(error, 0, "Embree reports an error");

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use residual_bvh::Ray;
 
 use crate::contender::{Contender, Prepared};
-use crate::rays::{Query, RaySet};
+use crate::rays::Query;
 
 use super::EmbreeScene;
 use super::ffi::{
@@ -79,9 +79,8 @@ enum Call {
 }
 
 impl Contender for EmbreeContender {
-    fn prepare<'a>(&'a self, set: &'a RaySet) -> Box<dyn Prepared + 'a> {
+    fn prepare(&self, query: Query) -> Box<dyn Prepared + '_> {
         let api = &self.scene.embree.api;
-        let query = set.kind.query();
         let [closest, any] = match self.mode.packet {
             1 => [api.rtcIntersect1, api.rtcOccluded1].map(Call::One),
             4 => [api.rtcIntersect4, api.rtcOccluded4].map(Call::Many),
@@ -94,10 +93,10 @@ impl Contender for EmbreeContender {
             Query::Any => any,
         };
         match self.mode.packet {
-            1 => Box::new(Packets::<1>::new(self, call, query, &set.rays)),
-            4 => Box::new(Packets::<4>::new(self, call, query, &set.rays)),
-            8 => Box::new(Packets::<8>::new(self, call, query, &set.rays)),
-            _ => Box::new(Packets::<16>::new(self, call, query, &set.rays)),
+            1 => Box::new(Packets::<1>::new(self, call, query)),
+            4 => Box::new(Packets::<4>::new(self, call, query)),
+            8 => Box::new(Packets::<8>::new(self, call, query)),
+            _ => Box::new(Packets::<16>::new(self, call, query)),
         }
     }
 }
@@ -107,26 +106,25 @@ impl Contender for EmbreeContender {
 struct Valid([c_int; 16]);
 
 struct Packets<'a, const N: usize> {
-    scene: Handle,
+    scene: &'a EmbreeScene,
     call: Call,
     query: Query,
     coherent: bool,
-    rays: &'a [Ray],
     packets: Vec<RayHits<N>>,
+    /// Lanes of the last packet that take part.
+    last: Valid,
 }
 
 impl<'a, const N: usize> Packets<'a, N> {
-    fn new(contender: &'a EmbreeContender, call: Call, query: Query, rays: &'a [Ray]) -> Self {
-        let mut packets = Packets {
-            scene: contender.scene.scene,
+    fn new(contender: &'a EmbreeContender, call: Call, query: Query) -> Self {
+        Packets {
+            scene: &contender.scene,
             call,
             query,
             coherent: contender.mode.coherent,
-            rays,
-            packets: vec![empty(); rays.len().div_ceil(N)],
-        };
-        packets.reset();
-        packets
+            packets: Vec::new(),
+            last: Valid([-1; 16]),
+        }
     }
 }
 
@@ -154,9 +152,14 @@ fn empty<const N: usize>() -> RayHits<N> {
 }
 
 impl<const N: usize> Prepared for Packets<'_, N> {
-    fn reset(&mut self) {
-        for (packet, rays) in self.packets.iter_mut().zip(self.rays.chunks(N)) {
-            packet.hits.geometry_id = [INVALID_GEOMETRY_ID; N];
+    fn load(&mut self, rays: &[Ray]) {
+        self.packets.clear();
+        self.packets.resize(rays.len().div_ceil(N), empty());
+        let filled = (rays.len() + N - 1) % N + 1;
+        self.last = Valid(std::array::from_fn(
+            |lane| if lane < filled { -1 } else { 0 },
+        ));
+        for (packet, rays) in self.packets.iter_mut().zip(rays.chunks(N)) {
             for (lane, ray) in rays.iter().enumerate() {
                 for axis in 0..3 {
                     packet.rays.org[axis][lane] = ray.org[axis];
@@ -182,11 +185,8 @@ impl<const N: usize> Prepared for Packets<'_, N> {
             callback: null_mut(),
             min_width_distance_factor: 0.0,
         };
-        let (all, mut last) = (Valid([-1; 16]), Valid([-1; 16]));
-        let filled = self.rays.len() % N;
-        if filled != 0 {
-            last.0[filled..].fill(0);
-        }
+        let all = Valid([-1; 16]);
+        let scene: Handle = self.scene.scene;
         let last_index = self.packets.len().wrapping_sub(1);
         for (index, packet) in self.packets.iter_mut().enumerate() {
             // An occlusion query gets a pointer to the rays, which come first.
@@ -195,10 +195,14 @@ impl<const N: usize> Prepared for Packets<'_, N> {
             // masks.
             unsafe {
                 match self.call {
-                    Call::One(trace) => trace(self.scene, pointer, &mut arguments),
+                    Call::One(trace) => trace(scene, pointer, &mut arguments),
                     Call::Many(trace) => {
-                        let valid = if index == last_index { &last } else { &all };
-                        trace(valid.0.as_ptr(), self.scene, pointer, &mut arguments);
+                        let valid = if index == last_index {
+                            &self.last
+                        } else {
+                            &all
+                        };
+                        trace(valid.0.as_ptr(), scene, pointer, &mut arguments);
                     }
                 }
             }
