@@ -1,6 +1,7 @@
 //! The part of Embree 4's C interface that we call (`rtcore_device.h`, `_scene.h`, `_geometry.h`, `_ray.h`).
 
 use std::ffi::{c_char, c_int, c_void};
+use std::mem::ManuallyDrop;
 
 use libloading::Library;
 
@@ -73,11 +74,12 @@ pub(super) type TraceN = unsafe extern "C" fn(*const c_int, Handle, *mut c_void,
 
 macro_rules! api {
     ($($name:ident: $type:ty;)*) => {
-        /// The functions, and the library that they live in.
+        /// The functions, and the library that they live in. It is never unloaded: its TBB has destructors that run
+        /// when threads end.
         #[allow(non_snake_case, reason = "Embree's names")]
         pub(super) struct Api {
             $(pub(super) $name: $type,)*
-            _library: Library,
+            _library: ManuallyDrop<Library>,
         }
 
         impl Api {
@@ -89,7 +91,7 @@ macro_rules! api {
                     // SAFETY: by this function's contract.
                     let $name = *unsafe { library.get::<$type>(concat!(stringify!($name), "\0").as_bytes()) }?;
                 )*
-                Ok(Api { $($name,)* _library: library })
+                Ok(Api { $($name,)* _library: ManuallyDrop::new(library) })
             }
         }
     };
