@@ -27,6 +27,15 @@ impl Isa {
         Isa::of(Level::baseline())
     }
 
+    /// What is measured unless something else is asked for: what the program was compiled for, or where that is only a
+    /// baseline, what run-time dispatch finds.
+    pub fn preferred() -> Isa {
+        match Isa::compiled_for() {
+            Isa::Other => Isa::native(),
+            isa => isa,
+        }
+    }
+
     /// Whether the machine has it.
     pub fn is_available(self) -> bool {
         match (self, Isa::native()) {

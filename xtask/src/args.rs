@@ -167,9 +167,9 @@ pub(crate) struct TraversalArgs {
     /// Kinds of rays, with commas between them
     #[arg(long, value_enum, value_delimiter = ',')]
     pub(crate) rays: Vec<RaysArg>,
-    /// Instruction set; Embree is limited to the same
-    #[arg(long, value_enum, default_value_t = IsaArg::Native)]
-    pub(crate) isa: IsaArg,
+    /// Instruction set; Embree is limited to the same [default: the one this program was built for]
+    #[arg(long, value_enum)]
+    pub(crate) isa: Option<IsaArg>,
     /// 3 rounds of 256x256 without obvhs and builds, which --kernel and --width leave out, too
     #[arg(long)]
     pub(crate) quick: bool,
@@ -211,8 +211,6 @@ pub(crate) enum RaysArg {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum IsaArg {
-    /// The machine's best
-    Native,
     /// AVX-512
     Avx512,
     /// AVX2 (build with RUSTFLAGS="-C target-cpu=x86-64-v3")

@@ -38,9 +38,9 @@ fn options(args: &TraversalArgs) -> Result<Options> {
         precisions: args.precision.iter().map(precision).collect(),
         rays: args.rays.iter().map(rays).collect(),
         isa: match args.isa {
-            IsaArg::Native => Isa::native(),
-            IsaArg::Avx512 => Isa::Avx512,
-            IsaArg::Avx2 => Isa::Avx2,
+            None => Isa::preferred(),
+            Some(IsaArg::Avx512) => Isa::Avx512,
+            Some(IsaArg::Avx2) => Isa::Avx2,
         },
         obvhs: !is_tuning,
         builds: !is_tuning,
