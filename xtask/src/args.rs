@@ -23,6 +23,9 @@ pub(crate) enum Command {
     Inspect(InspectArgs),
     /// Print the renderer that is generated for a scene
     Emit(EmitArgs),
+    /// Measure speed
+    #[command(subcommand)]
+    Bench(BenchCommand),
 }
 
 /// Which scene, and how it is read.
@@ -130,6 +133,88 @@ pub(crate) struct EmitArgs {
     /// Paths shaded at once: 1, 4, 8 or 16 [default: what suits the machine]
     #[arg(long, value_name = "N")]
     pub(crate) lanes: Option<LaneCount>,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum BenchCommand {
+    /// Ray queries, beside Embree's (set RESIDUAL_EMBREE_LIB) and obvhs'
+    Traversal(TraversalArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct TraversalArgs {
+    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scene: Vec<PathBuf>,
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Measured rounds [default: 11]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) rounds: Option<u32>,
+    /// Width and height of the image of primary rays [default: 512x512]
+    #[arg(long, value_name = "WxH")]
+    pub(crate) size: Option<Size>,
+    /// Our kernels, with commas between them
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) kernel: Vec<KernelArg>,
+    /// Our node widths, with commas between them
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    pub(crate) width: Vec<usize>,
+    /// Our precisions, with commas between them
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) precision: Vec<PrecisionArg>,
+    /// Kinds of rays, with commas between them
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) rays: Vec<RaysArg>,
+    /// Instruction set; Embree is limited to the same [default: the one this program was built for]
+    #[arg(long, value_enum)]
+    pub(crate) isa: Option<IsaArg>,
+    /// 3 rounds of 256x256 without obvhs and builds, which --kernel and --width leave out, too
+    #[arg(long)]
+    pub(crate) quick: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum KernelArg {
+    /// One ray, many boxes
+    Single,
+    /// Many rays, one box
+    Packet,
+    /// Packets that fall apart into single rays
+    Hybrid,
+    /// One ray, one box
+    Scalar,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PrecisionArg {
+    /// May miss between triangles
+    Fast,
+    /// Closed meshes are closed
+    Watertight,
+    /// Decided without rounding
+    Exact,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RaysArg {
+    /// Through pixels
+    Primary,
+    /// Any hit nearby, from what is seen
+    Ao,
+    /// Nearest hit, from what is seen
+    Diffuse,
+    /// Rays that hit nothing: what a call costs
+    Miss,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum IsaArg {
+    /// AVX-512
+    Avx512,
+    /// AVX2 (build with RUSTFLAGS="-C target-cpu=x86-64-v3")
+    Avx2,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -3,6 +3,7 @@
 //! A library, so that tests can compile renderers and build the command line for themselves.
 
 mod args;
+mod bench;
 pub mod compile;
 mod emit;
 mod inspect;
@@ -24,6 +25,7 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Emit(args) => emit::run(&args),
+        Command::Bench(command) => bench::run(&command),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,20 @@
+//! Benchmarks of ray queries: our kernels beside Embree and obvhs, on the same rays.
+//!
+//! ```text
+//! scene file ─ scene ─ rays ─▶ one RaySet per kind ─┐
+//!                   └─ builds ─▶ contenders ────────┴─ measure (rounds, all contenders in turn) ─ report
+//! ```
+//!
+//! [`run::traversal`] is the whole of it: `cargo xtask bench traversal` prints what it returns. Times are CPU times of
+//! one pinned thread. Every round runs all contenders once, so that a ratio is taken between neighbours in time.
+
+pub mod contender;
+pub mod embree;
+pub mod isa;
+pub mod measure;
+pub mod ours;
+pub mod peers;
+pub mod rays;
+pub mod report;
+pub mod run;
+pub mod scene;

@@ -1,0 +1,188 @@
+//! The clock, the rounds, and what a handful of noisy numbers says.
+
+use std::time::Duration;
+
+use residual_bvh::Ray;
+
+use crate::contender::Prepared;
+
+/// A median with its interval of at least 95 % confidence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The median.
+    pub median: f64,
+    /// Lower and upper end. Below six samples no such interval exists, and it is that of all samples.
+    pub interval: [f64; 2],
+}
+
+impl Estimate {
+    /// The median and the interval between two order statistics: the number of samples below the true median is
+    /// binomial with p = ½, whatever their distribution (H. A. David, *Order Statistics*, 7.1).
+    ///
+    /// # Panics
+    /// Without samples.
+    pub fn of(mut samples: Vec<f64>) -> Estimate {
+        assert!(!samples.is_empty());
+        samples.sort_by(f64::total_cmp);
+        let count = samples.len();
+        // The most samples that can be dropped at each end: P(Binomial(count, ½) < dropped) ≤ 2.5 %.
+        let mut dropped = 0;
+        let mut term = 0.5f64.powi(count as i32);
+        let mut tail = term;
+        while tail <= 0.025 {
+            dropped += 1;
+            term *= (count + 1 - dropped) as f64 / dropped as f64;
+            tail += term;
+        }
+        let dropped = dropped.saturating_sub(1).min((count - 1) / 2);
+        let middle = count / 2;
+        let median = if count % 2 == 1 {
+            samples[middle]
+        } else {
+            0.5 * (samples[middle - 1] + samples[middle])
+        };
+        Estimate {
+            median,
+            interval: [samples[dropped], samples[count - 1 - dropped]],
+        }
+    }
+}
+
+/// What [`interleaved`] found out.
+pub struct Measured {
+    /// Of every contender (outer) in every round (inner).
+    pub seconds: Vec<Vec<f64>>,
+    /// How many rays hit something, for every contender.
+    pub hits: Vec<usize>,
+}
+
+/// Rays that are traced between two looks at the clock: few enough to stay in the second-level cache, where a renderer
+/// that works in tiles has them, too. Out of memory a call of `rtcIntersect1` that hits nothing takes twice as long.
+pub const BATCH: usize = 2048;
+
+/// Measures contenders. A round runs all of them once on all rays, each time beginning with another one; a first round,
+/// which warms caches and pages, does not count.
+pub fn interleaved(
+    contenders: &mut [Box<dyn Prepared + '_>],
+    rays: &[Ray],
+    rounds: usize,
+) -> Measured {
+    let count = contenders.len();
+    let mut seconds = vec![Vec::with_capacity(rounds); count];
+    let mut hits = vec![0; count];
+    for round in 0..=rounds {
+        for turn in 0..count {
+            let index = (round + turn) % count;
+            let contender = &mut contenders[index];
+            let mut time = Duration::ZERO;
+            hits[index] = 0;
+            for batch in rays.chunks(BATCH) {
+                contender.load(batch);
+                let start = thread_time();
+                contender.run();
+                time += thread_time() - start;
+                hits[index] += contender.hits();
+            }
+            if round > 0 {
+                seconds[index].push(time.as_secs_f64());
+            }
+        }
+    }
+    Measured { seconds, hits }
+}
+
+/// CPU time of this thread; wall-clock time where the system does not tell.
+pub fn thread_time() -> Duration {
+    #[cfg(unix)]
+    {
+        clock(rustix::time::ClockId::ThreadCPUTime)
+    }
+    #[cfg(not(unix))]
+    {
+        wall_clock()
+    }
+}
+
+/// CPU time of all threads; wall-clock time where the system does not tell.
+pub fn process_time() -> Duration {
+    #[cfg(unix)]
+    {
+        clock(rustix::time::ClockId::ProcessCPUTime)
+    }
+    #[cfg(not(unix))]
+    {
+        wall_clock()
+    }
+}
+
+#[cfg(unix)]
+fn clock(id: rustix::time::ClockId) -> Duration {
+    let time = rustix::time::clock_gettime(id);
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
+#[cfg(not(unix))]
+fn wall_clock() -> Duration {
+    use std::{sync::OnceLock, time::Instant};
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed()
+}
+
+/// Keeps the thread on the processor it is on, until dropped; does nothing where the system has no such call.
+pub struct Pinned {
+    #[cfg(target_os = "linux")]
+    before: Option<rustix::thread::CpuSet>,
+}
+
+impl Pinned {
+    /// Pins the calling thread.
+    #[cfg(target_os = "linux")]
+    pub fn new() -> Pinned {
+        use rustix::thread::{CpuSet, sched_getaffinity, sched_getcpu, sched_setaffinity};
+        let before = sched_getaffinity(None).ok();
+        let mut one = CpuSet::new();
+        one.set(sched_getcpu());
+        // A container may forbid it; the measurement is then noisier, not wrong.
+        let _ = sched_setaffinity(None, &one);
+        Pinned { before }
+    }
+
+    /// Does nothing on this system.
+    #[cfg(not(target_os = "linux"))]
+    pub fn new() -> Pinned {
+        Pinned {}
+    }
+}
+
+impl Default for Pinned {
+    fn default() -> Pinned {
+        Pinned::new()
+    }
+}
+
+#[cfg(target_os = "linux")]
+impl Drop for Pinned {
+    fn drop(&mut self) {
+        if let Some(before) = &self.before {
+            let _ = rustix::thread::sched_setaffinity(None, before);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Estimate;
+
+    #[test]
+    fn intervals_are_those_of_the_tables() {
+        let of = |count: usize| Estimate::of((1..=count).rev().map(|x| x as f64).collect());
+        assert_eq!(of(1).interval, [1.0, 1.0]);
+        assert_eq!(of(5).interval, [1.0, 5.0]);
+        assert_eq!(of(6).interval, [1.0, 6.0]);
+        assert_eq!(of(9).interval, [2.0, 8.0]);
+        assert_eq!(of(11).interval, [2.0, 10.0]);
+        assert_eq!(of(20).interval, [6.0, 15.0]);
+        assert_eq!(of(11).median, 6.0);
+        assert_eq!(of(20).median, 10.5);
+    }
+}

@@ -1,0 +1,249 @@
+//! Our kernels: the only file that calls them. A new kernel is a line in [`variants`] and, where its signature is new,
+//! a macro that wraps it into a [`Stream`].
+
+use std::any::{Any, TypeId};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::fmt;
+use std::rc::Rc;
+
+use residual_bvh::{
+    AllHits, BuildQuality, Bvh, BvhView, Hit, Lanes, Ray, any_hit, build, closest_hit,
+};
+
+use crate::contender::Stream;
+use crate::isa::Isa;
+use crate::measure::process_time;
+use crate::on_isa;
+use crate::scene::Mesh;
+
+/// How rays are traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// One ray, many boxes.
+    Single,
+    /// Many rays, one box.
+    Packet,
+    /// Packets that fall apart into single rays.
+    Hybrid,
+    /// One ray, one box.
+    Scalar,
+}
+
+impl Kernel {
+    /// All, in the order of the tables.
+    pub const ALL: [Kernel; 4] = [
+        Kernel::Single,
+        Kernel::Packet,
+        Kernel::Hybrid,
+        Kernel::Scalar,
+    ];
+}
+
+impl fmt::Display for Kernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Kernel::Single => "single",
+            Kernel::Packet => "packet",
+            Kernel::Hybrid => "hybrid",
+            Kernel::Scalar => "scalar",
+        })
+    }
+}
+
+/// How much arithmetic is spent on edges and vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// May miss between triangles.
+    Fast,
+    /// Closed meshes are closed.
+    Watertight,
+    /// Decided without rounding.
+    Exact,
+}
+
+impl fmt::Display for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Precision::Fast => "fast",
+            Precision::Watertight => "watertight",
+            Precision::Exact => "exact",
+        })
+    }
+}
+
+/// One of our kernels on one kind of hierarchy.
+#[derive(Clone, Copy)]
+pub struct Variant {
+    /// How rays are traced.
+    pub kernel: Kernel,
+    /// Children of a node.
+    pub width: usize,
+    /// Triangles of a packet in a leaf.
+    pub triangle_packet: usize,
+    /// Rays traced together.
+    pub packet: usize,
+    /// Its precision.
+    pub precision: Precision,
+    /// The contender.
+    pub make: fn(&Trees<'_>, Isa) -> Stream,
+}
+
+/// All our kernels.
+pub fn variants() -> Vec<Variant> {
+    macro_rules! single {
+        ($n:literal, $precision:ident) => {
+            Variant {
+                kernel: Kernel::Single,
+                width: $n,
+                triangle_packet: $n,
+                packet: 1,
+                precision: Precision::$precision,
+                make: |trees, isa| {
+                    let tree = trees.get::<$n>();
+                    let same = tree.clone();
+                    Stream::new(
+                        move |rays, hits| {
+                            on_isa!(isa, simd => single_closest::<_, $n>(simd, tree.bvh.view(), rays, hits))
+                        },
+                        move |rays, occluded| {
+                            on_isa!(isa, simd => single_any::<_, $n>(simd, same.bvh.view(), rays, occluded))
+                        },
+                    )
+                },
+            }
+        };
+    }
+    vec![
+        single!(4, Watertight),
+        single!(8, Watertight),
+        single!(16, Watertight),
+    ]
+}
+
+#[inline(always)]
+fn single_closest<S: Lanes<N>, const N: usize>(
+    simd: S,
+    bvh: BvhView<'_, N>,
+    rays: &[Ray],
+    hits: &mut [Hit],
+) {
+    for (ray, hit) in rays.iter().zip(hits) {
+        *hit = closest_hit(simd, bvh, ray, &AllHits);
+    }
+}
+
+#[inline(always)]
+fn single_any<S: Lanes<N>, const N: usize>(
+    simd: S,
+    bvh: BvhView<'_, N>,
+    rays: &[Ray],
+    occluded: &mut [bool],
+) {
+    for (ray, occluded) in rays.iter().zip(occluded) {
+        *occluded = any_hit(simd, bvh, ray, &AllHits);
+    }
+}
+
+/// What a build cost and gave.
+#[derive(Clone, Copy, Debug)]
+pub struct BuildCost {
+    /// CPU seconds; the build has one thread.
+    pub seconds: f64,
+    /// Expected cost of a ray by the surface area heuristic, in node tests.
+    pub sah_cost: f64,
+    /// Size of nodes and packets.
+    pub memory_bytes: usize,
+}
+
+/// A hierarchy and what it cost.
+pub struct Tree<const N: usize> {
+    /// The hierarchy.
+    pub bvh: Bvh<N>,
+    /// What it cost.
+    pub cost: BuildCost,
+}
+
+/// Builds and times one hierarchy.
+pub fn build_tree<const N: usize>(mesh: &Mesh, quality: BuildQuality) -> Tree<N> {
+    let start = process_time();
+    let bvh = build::<N>(&mesh.positions, &mesh.triangles, None, quality);
+    let cost = BuildCost {
+        seconds: (process_time() - start).as_secs_f64(),
+        sah_cost: f64::from(bvh.sah_cost()),
+        memory_bytes: bvh.memory_bytes(),
+    };
+    Tree { bvh, cost }
+}
+
+/// A mesh's hierarchies of [`BuildQuality::Best`], each built when it is first asked for.
+pub struct Trees<'m> {
+    mesh: &'m Mesh,
+    built: RefCell<HashMap<TypeId, Rc<dyn Any>>>,
+}
+
+impl<'m> Trees<'m> {
+    /// None built yet.
+    pub fn new(mesh: &'m Mesh) -> Trees<'m> {
+        Trees {
+            mesh,
+            built: RefCell::default(),
+        }
+    }
+
+    /// The hierarchy with `N` children a node.
+    pub fn get<const N: usize>(&self) -> Rc<Tree<N>> {
+        let mut built = self.built.borrow_mut();
+        let tree = built
+            .entry(TypeId::of::<Tree<N>>())
+            .or_insert_with(|| Rc::new(build_tree::<N>(self.mesh, BuildQuality::Best)))
+            .clone();
+        tree.downcast().expect("trees are kept under their type")
+    }
+}
+
+/// A build to be timed.
+pub struct Build {
+    /// Children of a node.
+    pub width: usize,
+    /// Triangles of a packet.
+    pub triangle_packet: usize,
+    /// Name of the quality.
+    pub quality: &'static str,
+    /// Builds, or looks up what [`Trees`] has built.
+    pub cost: fn(&Trees<'_>) -> BuildCost,
+}
+
+/// All shapes of trees with all qualities.
+pub fn builds() -> Vec<Build> {
+    macro_rules! builds {
+        ($($n:literal)*) => {
+            vec![$(
+                builds!($n, "fast", |trees| build_tree::<$n>(trees.mesh, BuildQuality::Fast).cost),
+                builds!($n, "medium", |trees| build_tree::<$n>(trees.mesh, BuildQuality::Medium).cost),
+                builds!($n, "best", |trees| trees.get::<$n>().cost),
+            )*]
+        };
+        ($n:literal, $quality:literal, $cost:expr) => {
+            Build { width: $n, triangle_packet: $n, quality: $quality, cost: $cost }
+        };
+    }
+    builds!(4 8 16)
+}
+
+/// Nearest hits by a kernel that the other answers are compared with, and from which rays are made.
+pub struct Reference(Bvh<8>);
+
+impl Reference {
+    /// Builds its hierarchy, quickly.
+    pub fn new(mesh: &Mesh) -> Reference {
+        Reference(build_tree::<8>(mesh, BuildQuality::Fast).bvh)
+    }
+
+    /// The nearest hits.
+    pub fn closest(&self, rays: &[Ray]) -> Vec<Hit> {
+        let mut hits = vec![Hit::miss(0.0); rays.len()];
+        fearless_simd::dispatch!(fearless_simd::Level::new(), simd => single_closest::<_, 8>(simd, self.0.view(), rays, &mut hits));
+        hits
+    }
+}

@@ -1,0 +1,238 @@
+//! What rays are traced through: a triangle soup in world space, and a view of it.
+
+use std::path::Path;
+
+use anyhow::{Result, ensure};
+use glam::{Quat, Vec3};
+use residual_bvh::{Bounds, Ray};
+use residual_scenegen::desc::{CameraDesc, Projection, SceneDesc};
+use residual_scenegen::import::{ImportOptions, import};
+
+use crate::ours::Reference;
+
+/// Triangles in world space.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Vertices.
+    pub positions: Vec<[f32; 3]>,
+    /// Corners, counter-clockwise seen from the front.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// All instances of a scene, baked.
+    pub fn of(scene: &SceneDesc) -> Mesh {
+        let mut baked = Mesh::default();
+        for instance in &scene.instances {
+            let mesh = &scene.meshes[instance.mesh];
+            let first = baked.positions.len() as u32;
+            let place = |&p: &Vec3| instance.transform.transform_point3(p).to_array();
+            baked.positions.extend(mesh.positions.iter().map(place));
+            let mirrored = instance.transform.matrix3.determinant() < 0.0;
+            baked
+                .triangles
+                .extend(mesh.triangles.iter().map(|&[a, b, c]| {
+                    let [b, c] = if mirrored { [c, b] } else { [b, c] };
+                    [first + a, first + b, first + c]
+                }));
+        }
+        baked
+    }
+
+    /// A sphere with bumps: `2 · rings · segments` triangles, those at the poles without area.
+    pub fn bumpy_sphere(rings: usize, segments: usize) -> Mesh {
+        use std::f32::consts::{PI, TAU};
+        let point = |ring: usize, segment: usize| {
+            let theta = PI * ring as f32 / rings as f32;
+            let phi = TAU * segment as f32 / segments as f32;
+            let radius = 1.0 + 0.1 * (9.0 * theta).sin() * (11.0 * phi).sin();
+            let (s, c) = theta.sin_cos();
+            [radius * s * phi.cos(), radius * c, radius * s * phi.sin()]
+        };
+        let positions = (0..=rings)
+            .flat_map(|ring| (0..segments).map(move |segment| point(ring, segment)))
+            .collect();
+        let index = |ring: usize, segment: usize| (ring * segments + segment % segments) as u32;
+        let quad = |(ring, segment): (usize, usize)| {
+            let (a, b) = (index(ring, segment), index(ring, segment + 1));
+            let (c, d) = (index(ring + 1, segment), index(ring + 1, segment + 1));
+            [[a, b, c], [b, d, c]]
+        };
+        let triangles = (0..rings)
+            .flat_map(|ring| (0..segments).map(move |segment| (ring, segment)))
+            .flat_map(quad)
+            .collect();
+        Mesh {
+            positions,
+            triangles,
+        }
+    }
+
+    /// The box around all triangles.
+    pub fn bounds(&self) -> Bounds {
+        let vertices = self.triangles.iter().flatten();
+        vertices.fold(Bounds::EMPTY, |bounds, &vertex| {
+            let point = self.positions[vertex as usize];
+            let point = Bounds {
+                lo: point,
+                hi: point,
+            };
+            bounds.union(&point)
+        })
+    }
+
+    /// A triangle's normal, not normalised.
+    pub fn normal(&self, prim: u32) -> Vec3 {
+        let [a, b, c] =
+            self.triangles[prim as usize].map(|vertex| Vec3::from(self.positions[vertex as usize]));
+        (b - a).cross(c - a)
+    }
+}
+
+/// A pinhole camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Where it is.
+    pub eye: Vec3,
+    /// Looks along -Z, +Y is up.
+    pub rotation: Quat,
+    /// Vertical field of view in radians.
+    pub yfov: f32,
+}
+
+/// Something to be measured.
+pub struct Scene {
+    /// The file's stem.
+    pub name: String,
+    /// Its triangles.
+    pub mesh: Mesh,
+    /// How it is seen.
+    pub view: View,
+    /// Answers for making rays and for checking contenders.
+    pub reference: Reference,
+    /// Length of the diagonal of the box around it.
+    pub diagonal: f32,
+}
+
+impl Scene {
+    /// Reads a file. Its first perspective camera is used; without one, a view from its box: from the inside where its
+    /// middle sees mostly fronts of triangles, and otherwise from the front.
+    pub fn load(path: &Path) -> Result<Scene> {
+        let scene = import(path, &ImportOptions::default())?;
+        let mesh = Mesh::of(&scene);
+        ensure!(
+            !mesh.triangles.is_empty(),
+            "{}: nothing to trace",
+            path.display()
+        );
+        let camera = scene.cameras.iter().find_map(perspective);
+        Ok(Scene::new(scene.name, mesh, camera))
+    }
+
+    /// A mesh with a view, or with one made from its box.
+    pub fn new(name: String, mesh: Mesh, view: Option<View>) -> Scene {
+        let reference = Reference::new(&mesh);
+        let bounds = mesh.bounds();
+        let [lo, hi] = [bounds.lo, bounds.hi].map(Vec3::from);
+        let view = view.unwrap_or_else(|| {
+            let inside = inside(lo, hi);
+            if sees_fronts(inside.eye, &mesh, &reference) {
+                inside
+            } else {
+                framing(lo, hi)
+            }
+        });
+        Scene {
+            name,
+            mesh,
+            view,
+            reference,
+            diagonal: (hi - lo).length(),
+        }
+    }
+}
+
+fn perspective(camera: &CameraDesc) -> Option<View> {
+    match camera.projection {
+        Projection::Perspective { yfov } => Some(View {
+            eye: camera.position,
+            rotation: camera.rotation,
+            yfov,
+        }),
+        Projection::Orthographic { .. } => None,
+    }
+}
+
+/// In the middle, at a third of the height, along the longer horizontal axis.
+fn inside(lo: Vec3, hi: Vec3) -> View {
+    let size = hi - lo;
+    let mut eye = lo + 0.5 * size;
+    eye.y = lo.y + size.y / 3.0;
+    let dir = if size.x >= size.z {
+        Vec3::X
+    } else {
+        Vec3::NEG_Z
+    };
+    View {
+        eye,
+        rotation: Quat::from_rotation_arc(Vec3::NEG_Z, dir),
+        yfov: 1.0,
+    }
+}
+
+/// From the front, a little from above, with everything in view.
+fn framing(lo: Vec3, hi: Vec3) -> View {
+    let yfov = 0.7f32;
+    let dir = Vec3::new(-0.27, -0.32, -0.91).normalize();
+    let distance = 0.5 * (hi - lo).length() / (0.5 * yfov).sin();
+    let right = dir.cross(Vec3::Y).normalize();
+    View {
+        eye: 0.5 * (lo + hi) - distance * dir,
+        rotation: Quat::from_mat3(&glam::Mat3::from_cols(right, right.cross(dir), -dir)),
+        yfov,
+    }
+}
+
+/// Whether most directions from a point end at the front of a triangle: a room does so, a solid does not.
+fn sees_fronts(eye: Vec3, mesh: &Mesh, reference: &Reference) -> bool {
+    const COUNT: usize = 256;
+    let dir = |i: usize| {
+        let y = 1.0 - (2 * i + 1) as f32 / COUNT as f32;
+        let (sin, cos) = (2.399_963 * i as f32).sin_cos();
+        let radius = (1.0 - y * y).sqrt();
+        [radius * cos, y, radius * sin]
+    };
+    let ray = |i| Ray {
+        org: eye.to_array(),
+        tmin: 0.0,
+        dir: dir(i),
+        tmax: f32::INFINITY,
+    };
+    let rays: Vec<Ray> = (0..COUNT).map(ray).collect();
+    let is_front = |(ray, hit): &(&Ray, residual_bvh::Hit)| {
+        hit.is_hit() && mesh.normal(hit.prim).dot(ray.dir.into()) < 0.0
+    };
+    rays.iter()
+        .zip(reference.closest(&rays))
+        .filter(is_front)
+        .count()
+        > COUNT / 2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solids_are_seen_from_outside_and_rooms_from_inside() {
+        let solid = Mesh::bumpy_sphere(20, 40);
+        let mut room = solid.clone();
+        for [_, b, c] in &mut room.triangles {
+            std::mem::swap(b, c);
+        }
+        let eye = |mesh| Scene::new(String::new(), mesh, None).view.eye.length();
+        let eyes = [eye(solid), eye(room)];
+        assert!(eyes.iter().any(|&distance| distance < 1.0));
+        assert!(eyes.iter().any(|&distance| distance > 2.0));
+    }
+}
