@@ -8,7 +8,7 @@ use std::fmt;
 use std::rc::Rc;
 
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, BvhView, Hit, Lanes, Ray, any_hit, build, closest_hit,
+    AllHits, BuildQuality, Bvh, Hit, Hybrid, Kernel as _, Packets, Ray, Single, Watertight, build,
 };
 
 use crate::contender::Stream;
@@ -91,58 +91,48 @@ pub struct Variant {
 
 /// All our kernels.
 pub fn variants() -> Vec<Variant> {
-    macro_rules! single {
-        ($n:literal, $precision:ident) => {
-            Variant {
-                kernel: Kernel::Single,
+    macro_rules! variants {
+        ($($kernel:ident($trace:expr, $packet:literal): $n:literal x $p:literal, $precision:ident;)*) => {
+            vec![$(Variant {
+                kernel: Kernel::$kernel,
                 width: $n,
-                triangle_packet: $n,
-                packet: 1,
+                triangle_packet: $p,
+                packet: $packet,
                 precision: Precision::$precision,
                 make: |trees, isa| {
-                    let tree = trees.get::<$n>();
+                    let tree = trees.get::<$n, $p>();
                     let same = tree.clone();
                     Stream::new(
                         move |rays, hits| {
-                            on_isa!(isa, simd => single_closest::<_, $n>(simd, tree.bvh.view(), rays, hits))
+                            on_isa!(isa, simd => $trace.closest_hits(
+                                simd, residual_bvh::$precision, tree.bvh.view(), rays, hits, &AllHits))
                         },
                         move |rays, occluded| {
-                            on_isa!(isa, simd => single_any::<_, $n>(simd, same.bvh.view(), rays, occluded))
+                            on_isa!(isa, simd => $trace.any_hits(
+                                simd, residual_bvh::$precision, same.bvh.view(), rays, occluded, &AllHits))
                         },
                     )
                 },
-            }
+            }),*]
         };
     }
-    vec![
-        single!(4, Watertight),
-        single!(8, Watertight),
-        single!(16, Watertight),
+    variants![
+        Single(Single, 1): 4 x 4, Fast;
+        Single(Single, 1): 8 x 8, Fast;
+        Single(Single, 1): 16 x 16, Fast;
+        Single(Single, 1): 4 x 4, Watertight;
+        Single(Single, 1): 8 x 8, Watertight;
+        Single(Single, 1): 16 x 16, Watertight;
+        Packet(Packets::<4>, 4): 4 x 4, Fast;
+        Packet(Packets::<8>, 8): 8 x 8, Fast;
+        Packet(Packets::<16>, 16): 16 x 16, Fast;
+        Hybrid(Hybrid::<4>, 4): 4 x 4, Fast;
+        Hybrid(Hybrid::<8>, 8): 8 x 8, Fast;
+        Hybrid(Hybrid::<16>, 16): 16 x 16, Fast;
+        Hybrid(Hybrid::<4>, 4): 4 x 4, Watertight;
+        Hybrid(Hybrid::<8>, 8): 8 x 8, Watertight;
+        Hybrid(Hybrid::<16>, 16): 16 x 16, Watertight;
     ]
-}
-
-#[inline(always)]
-fn single_closest<S: Lanes<N>, const N: usize>(
-    simd: S,
-    bvh: BvhView<'_, N>,
-    rays: &[Ray],
-    hits: &mut [Hit],
-) {
-    for (ray, hit) in rays.iter().zip(hits) {
-        *hit = closest_hit(simd, bvh, ray, &AllHits);
-    }
-}
-
-#[inline(always)]
-fn single_any<S: Lanes<N>, const N: usize>(
-    simd: S,
-    bvh: BvhView<'_, N>,
-    rays: &[Ray],
-    occluded: &mut [bool],
-) {
-    for (ray, occluded) in rays.iter().zip(occluded) {
-        *occluded = any_hit(simd, bvh, ray, &AllHits);
-    }
 }
 
 /// What a build cost and gave.
@@ -157,17 +147,20 @@ pub struct BuildCost {
 }
 
 /// A hierarchy and what it cost.
-pub struct Tree<const N: usize> {
+pub struct Tree<const N: usize, const P: usize> {
     /// The hierarchy.
-    pub bvh: Bvh<N>,
+    pub bvh: Bvh<N, P>,
     /// What it cost.
     pub cost: BuildCost,
 }
 
 /// Builds and times one hierarchy.
-pub fn build_tree<const N: usize>(mesh: &Mesh, quality: BuildQuality) -> Tree<N> {
+pub fn build_tree<const N: usize, const P: usize>(
+    mesh: &Mesh,
+    quality: BuildQuality,
+) -> Tree<N, P> {
     let start = process_time();
-    let bvh = build::<N>(&mesh.positions, &mesh.triangles, None, quality);
+    let bvh = build::<N, P>(&mesh.positions, &mesh.triangles, None, quality);
     let cost = BuildCost {
         seconds: (process_time() - start).as_secs_f64(),
         sah_cost: f64::from(bvh.sah_cost()),
@@ -191,12 +184,12 @@ impl<'m> Trees<'m> {
         }
     }
 
-    /// The hierarchy with `N` children a node.
-    pub fn get<const N: usize>(&self) -> Rc<Tree<N>> {
+    /// The hierarchy with `N` children a node and `P` triangles a packet.
+    pub fn get<const N: usize, const P: usize>(&self) -> Rc<Tree<N, P>> {
         let mut built = self.built.borrow_mut();
         let tree = built
-            .entry(TypeId::of::<Tree<N>>())
-            .or_insert_with(|| Rc::new(build_tree::<N>(self.mesh, BuildQuality::Best)))
+            .entry(TypeId::of::<Tree<N, P>>())
+            .or_insert_with(|| Rc::new(build_tree::<N, P>(self.mesh, BuildQuality::Best)))
             .clone();
         tree.downcast().expect("trees are kept under their type")
     }
@@ -219,9 +212,9 @@ pub fn builds() -> Vec<Build> {
     macro_rules! builds {
         ($($n:literal)*) => {
             vec![$(
-                builds!($n, "fast", |trees| build_tree::<$n>(trees.mesh, BuildQuality::Fast).cost),
-                builds!($n, "medium", |trees| build_tree::<$n>(trees.mesh, BuildQuality::Medium).cost),
-                builds!($n, "best", |trees| trees.get::<$n>().cost),
+                builds!($n, "fast", |trees| build_tree::<$n, $n>(trees.mesh, BuildQuality::Fast).cost),
+                builds!($n, "medium", |trees| build_tree::<$n, $n>(trees.mesh, BuildQuality::Medium).cost),
+                builds!($n, "best", |trees| trees.get::<$n, $n>().cost),
             )*]
         };
         ($n:literal, $quality:literal, $cost:expr) => {
@@ -237,13 +230,13 @@ pub struct Reference(Bvh<8>);
 impl Reference {
     /// Builds its hierarchy, quickly.
     pub fn new(mesh: &Mesh) -> Reference {
-        Reference(build_tree::<8>(mesh, BuildQuality::Fast).bvh)
+        Reference(build_tree::<8, 8>(mesh, BuildQuality::Fast).bvh)
     }
 
     /// The nearest hits.
     pub fn closest(&self, rays: &[Ray]) -> Vec<Hit> {
         let mut hits = vec![Hit::miss(0.0); rays.len()];
-        fearless_simd::dispatch!(fearless_simd::Level::new(), simd => single_closest::<_, 8>(simd, self.0.view(), rays, &mut hits));
+        fearless_simd::dispatch!(fearless_simd::Level::new(), simd => Single.closest_hits(simd, Watertight, self.0.view(), rays, &mut hits, &AllHits));
         hits
     }
 }

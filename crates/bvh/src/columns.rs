@@ -1,6 +1,7 @@
 //! A packet of rays in columns, as vector lanes want them.
 
 use crate::slab::{LEAST, Octant};
+use crate::triangle::Axes;
 use crate::{Lanes, Ray};
 
 /// `R` valid rays.
@@ -39,6 +40,20 @@ impl<const R: usize> Columns<R> {
             }
         }
         columns
+    }
+
+    /// How far the directions spread: the greatest difference of their slopes, which lie in
+    /// [-1, 1] for rays with this order of axes.
+    #[inline(always)]
+    pub(crate) fn spread(&self, [kx, ky, kz]: Axes) -> f32 {
+        let spread = |axis: usize| {
+            let mut slopes = [0.0; R];
+            for (lane, slope) in slopes.iter_mut().enumerate() {
+                *slope = self.dir[axis][lane] / self.dir[kz][lane];
+            }
+            greatest(slopes) - least(slopes)
+        };
+        spread(kx).max(spread(ky))
     }
 
     /// The inverse directions, as for single rays.

@@ -27,6 +27,9 @@ pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F> {
     pub(crate) few: u32,
 }
 
+/// Rays whose slopes differ by more than this are not worth a packet.
+const SPREAD: f32 = 0.25;
+
 /// A subtree yet to visit.
 #[derive(Clone, Copy)]
 struct Entry {
@@ -62,6 +65,12 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
         }
         let simd = self.simd;
         let columns = Columns::<R>::gather(rays, members);
+        if self.few > 0 && columns.spread(class.axes) > SPREAD {
+            for &member in members {
+                self.single::<ANY>(Child::ROOT, rays, member, hits);
+            }
+            return;
+        }
         let envelope = Slab::<S, N>::enclosing(simd, &columns, class.octant);
         let slab = Slab::<S, R>::of_rays(simd, &columns, class.octant);
         let shear = Shear::<S, R>::of_rays(simd, &columns, rays, members, class.axes);
@@ -93,8 +102,9 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
                 simd.store(entry, &mut distances);
                 let base = len;
                 while touched != 0 {
-                    let slot = touched.trailing_zeros() as usize % N;
-                    touched &= touched - 1;
+                    // The last first: pushed in reverse, children come in their order.
+                    let slot = (31 - touched.leading_zeros()) as usize % N;
+                    touched &= !(1 << slot);
                     let touching = active & slab.touching_rays(simd, node, slot, &tmax);
                     if touching == 0 {
                         continue;
@@ -104,9 +114,9 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
                         child: Child(node.children[slot]),
                         rays: touching,
                     };
-                    // Insertion, nearest on top.
+                    // Insertion, nearest on top; where any hit will do, the order is the builder's.
                     let mut place = len;
-                    while place > base {
+                    while !ANY && place > base {
                         // SAFETY: entries below `len` are initialised.
                         let other = unsafe { stack[place - 1].assume_init() };
                         if other.distance >= entry.distance {

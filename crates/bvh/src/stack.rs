@@ -127,6 +127,29 @@ impl<const N: usize> Stack<N> {
         }
     }
 
+    /// Leaves all touched children but the first on the stack, in reverse, and returns the first,
+    /// or an empty leaf if none is touched: the order that the builder chose for any-hit queries.
+    /// Their distance is taken for zero.
+    ///
+    /// # Safety
+    /// As for [`descend`](Stack::descend).
+    #[inline(always)]
+    pub(crate) unsafe fn descend_unsorted(&mut self, touched: u32, children: &[u32; N]) -> Child {
+        if touched == 0 {
+            return Child::VACANT;
+        }
+        let mut rest = touched & (touched - 1);
+        while rest != 0 {
+            let slot = 31 - rest.leading_zeros();
+            rest &= !(1 << slot);
+            // SAFETY: slots are positions of bits of `touched`, below N, and there is room for N
+            // entries, by this function's contract.
+            unsafe { self.push(u64::from(*children.get_unchecked(slot as usize))) };
+        }
+        // SAFETY: as above.
+        Child(unsafe { *children.get_unchecked(touched.trailing_zeros() as usize) })
+    }
+
     /// The nearest subtree that is not entered behind `tmax`.
     ///
     /// # Safety

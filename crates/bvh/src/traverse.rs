@@ -43,7 +43,13 @@ pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, V: Visitor>(
             // SAFETY: `touched` has bits in 0..N only. The stack has room for N - 1 entries for
             // each level of the tree, and each of the at most MAX_DEPTH nodes on the path to this
             // one left at most N - 1 behind, since one of its children was descended into.
-            current = unsafe { stack.descend::<S>(simd, touched, entry, &node.children) };
+            current = unsafe {
+                if V::ANY {
+                    stack.descend_unsorted(touched, &node.children)
+                } else {
+                    stack.descend(simd, touched, entry, &node.children)
+                }
+            };
         }
         if visitor.leaf(current).is_break() {
             return;
