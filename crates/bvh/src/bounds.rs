@@ -12,7 +12,7 @@
 //!   lose a hit, in whatever order the tree is walked.
 //!
 //! The second argument needs the whole padded box inside every ancestor. Split references
-//! (`split.rs`) hold a part of it only; there it fails when rounding moves `t` out of the part,
+//! (`spatial.rs`) hold a part of it only; there it fails when rounding moves `t` out of the part,
 //! which takes a triangle seen edge-on and another surface at the same distance.
 
 /// An axis-aligned box; empty when `lo > hi`.

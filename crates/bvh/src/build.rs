@@ -1,19 +1,19 @@
 //! From a mesh to a hierarchy: which triangles take part, and the steps of the build.
 
-use crate::balance::limit_depth;
-use crate::binary::BinaryTree;
 use crate::collapse::collapse;
-use crate::split::split_references;
+use crate::reinsert::reinsert;
+use crate::sbvh::{Splits, build_tree};
 use crate::{Bounds, Bvh};
+use rayon::prelude::*;
 
 /// How much time the build may spend on the tree's quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BuildQuality {
-    /// For previews.
+    /// From the top down.
     Fast,
-    /// For images that take minutes.
+    /// Then a few subtrees move to where they cost less.
     Medium,
-    /// Splits large triangles and optimises thoroughly.
+    /// Splits large triangles, and moves many subtrees.
     Best,
 }
 
@@ -68,26 +68,17 @@ pub fn build<const N: usize>(
         single_sided,
     };
     let prims: Vec<u32> = (0..triangles.len() as u32)
+        .into_par_iter()
         .filter(|&prim| has_area(&mesh.vertices(prim)))
         .collect();
-    let references = match quality {
-        BuildQuality::Best => split_references(&mesh, &prims),
-        BuildQuality::Fast | BuildQuality::Medium => whole_references(&mesh, &prims),
+    let (splits, rounds): (Splits, &[f32]) = match quality {
+        BuildQuality::Fast => (Splits::Objects, &[]),
+        BuildQuality::Medium => (Splits::Objects, &[0.3, 0.2, 0.2, 0.2]),
+        BuildQuality::Best => (Splits::ObjectsAndSpace, &[1.0; 8]),
     };
-    let tree = limit_depth(BinaryTree::build(&references, quality));
+    let (tree, references) = build_tree(&mesh, &prims, splits);
+    let (tree, references) = reinsert(tree, references, N as u32, rounds);
     collapse(&tree, &references, &mesh)
-}
-
-/// One reference for each triangle.
-pub(crate) fn whole_references(mesh: &Mesh<'_>, prims: &[u32]) -> Vec<Reference> {
-    let whole = |&prim: &u32| {
-        let bounds = Bounds::of_triangle(&mesh.vertices(prim));
-        Reference {
-            prim,
-            bounds: bounds.padded(bounds.extent()),
-        }
-    };
-    prims.iter().map(whole).collect()
 }
 
 /// Whether the vertices are finite and not collinear. In `f64` the products of any two `f32`

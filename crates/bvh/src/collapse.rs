@@ -6,31 +6,46 @@
 //! binary node and every `i < N`, the least cost of representing its subtree by at most `i` wide
 //! nodes or leaves.
 
-use crate::Bvh;
+use rayon::prelude::*;
+
 use crate::binary::{BinaryNode, BinaryTree};
 use crate::build::{Mesh, Reference};
 use crate::bvh::{Child, Node, TrianglePacket};
 use crate::validate::check_structure;
+use crate::{Bounds, Bvh};
 
 /// Cost of testing a ray against a packet, in units of testing it against a node.
 const PACKET_COST: f32 = 1.0;
 /// Packets in the largest leaf considered.
 const MAX_LEAF_PACKETS: usize = 4;
+/// Binary nodes of the largest subtree planned as one task.
+const TASK: usize = 1 << 13;
 const _: () = assert!(MAX_LEAF_PACKETS <= Child::MAX_PACKETS);
 
 /// How best to represent one binary subtree.
 #[derive(Clone, Copy)]
 struct Plan<const N: usize> {
-    /// `cost[i]`, for `i` in `1..N`: with at most `i` roots.
-    cost: [f32; N],
-    /// How many of those roots the left child gets; none: the plan is the one for `i - 1`, and for
-    /// `i = 1` a single root.
+    bounds: Bounds,
+    /// References below.
+    count: u32,
+    /// How many of at most `i` roots, for `i` in `2..N`, the left child gets; none: the plan is the
+    /// one for `i - 1`, and for `i = 1` a single root.
     left_roots: [u8; N],
     /// For a single root: how many of its `N` slots the left child gets; none: it is a leaf.
     left_slots: u8,
-    /// References below.
-    count: u32,
 }
+
+impl<const N: usize> Plan<N> {
+    const LEAF: Plan<N> = Plan {
+        bounds: Bounds::EMPTY,
+        count: 1,
+        left_roots: [0; N],
+        left_slots: 0,
+    };
+}
+
+/// `cost[i]`, for `i` in `1..N`: of a subtree represented with at most `i` roots.
+type Costs<const N: usize> = [f32; N];
 
 /// The wide hierarchy over `references`, which the tree's leaves index.
 pub(crate) fn collapse<const N: usize>(
@@ -46,33 +61,36 @@ pub(crate) fn collapse<const N: usize>(
     if tree.nodes.is_empty() {
         return bvh;
     }
-    let bounds = tree.bounds(references);
-    let root_area = bounds[0].half_area();
+    let planner = Planner {
+        tree,
+        references,
+        root_area: bounds_of(references).half_area(),
+    };
+    let mut plans: Vec<Plan<N>> = vec![Plan::LEAF; tree.nodes.len()];
+    planner.plan(0, &mut plans);
     // The probability that a ray which enters the root enters the node.
-    let areas: Vec<f32> = bounds
-        .iter()
-        .map(|bounds| (bounds.half_area() / root_area) as f32)
-        .collect();
-    let plans: Vec<Plan<N>> = plan(tree, &areas);
+    let area = |node: u32| planner.relative_area(&plans[node as usize].bounds);
 
     // Wide nodes in preorder: (binary node, wide node). Parents come before their children.
     let mut pending = vec![(0u32, 0usize)];
     let mut cost = 0.0f64;
     while let Some((source, target)) = pending.pop() {
         let mut wide = Node::VACANT;
-        cost += f64::from(areas[source as usize]);
-        for (slot, child) in slots_of(tree, &plans, source).into_iter().enumerate() {
-            let stored = if plans[child as usize].left_slots == 0 {
-                let leaf = push_leaf(&mut bvh.packets, tree, child, references, mesh);
+        cost += f64::from(area(source));
+        let (slots, used) = slots_of(tree, &plans, source);
+        for (slot, &child) in slots[..used].iter().enumerate() {
+            let plan = &plans[child as usize];
+            let stored = if plan.left_slots == 0 {
+                let leaf = push_leaf(&mut bvh.packets, tree, child, plan.count, references, mesh);
                 let tests = PACKET_COST * leaf.packet_count() as f32;
-                cost += f64::from(tests * areas[child as usize]);
+                cost += f64::from(tests * area(child));
                 leaf
             } else {
                 bvh.nodes.push(Node::VACANT);
                 pending.push((child, bvh.nodes.len() - 1));
                 Child::node(bvh.nodes.len() - 1)
             };
-            wide.set_child(slot, &bounds[child as usize], stored);
+            wide.set_child(slot, &plan.bounds, stored);
         }
         bvh.nodes[target] = wide;
     }
@@ -81,77 +99,110 @@ pub(crate) fn collapse<const N: usize>(
     bvh
 }
 
-fn plan<const N: usize>(tree: &BinaryTree, areas: &[f32]) -> Vec<Plan<N>> {
-    let unplanned = Plan {
-        cost: [0.0; N],
-        left_roots: [0; N],
-        left_slots: 0,
-        count: 1,
-    };
-    let mut plans = vec![unplanned; tree.nodes.len()];
-    for (index, node) in tree.nodes.iter().enumerate().rev() {
-        plans[index] = match *node {
-            BinaryNode::Leaf(_) => Plan {
-                cost: [PACKET_COST * areas[index]; N],
-                ..unplanned
-            },
-            BinaryNode::Inner(left, right) => {
-                plan_inner(&plans[left as usize], &plans[right as usize], areas[index])
-            }
-        };
-    }
-    plans
+struct Planner<'a> {
+    tree: &'a BinaryTree,
+    references: &'a [Reference],
+    root_area: f64,
 }
 
-fn plan_inner<const N: usize>(left: &Plan<N>, right: &Plan<N>, area: f32) -> Plan<N> {
+impl Planner<'_> {
+    /// Plans the subtree of `node`, whose nodes `plans` are, and returns its costs.
+    fn plan<const N: usize>(&self, node: u32, plans: &mut [Plan<N>]) -> Costs<N> {
+        let (plan, below) = plans.split_first_mut().expect("at least the node itself");
+        let (left, right) = match self.tree.nodes[node as usize] {
+            BinaryNode::Leaf(reference) => {
+                plan.bounds = self.references[reference as usize].bounds;
+                return [PACKET_COST * self.relative_area(&plan.bounds); N];
+            }
+            BinaryNode::Inner(left, right) => (left, right),
+        };
+        let parallel = below.len() > TASK;
+        let (lefts, rights) = below.split_at_mut((right - left) as usize);
+        let (left_costs, right_costs) = if parallel {
+            rayon::join(|| self.plan(left, lefts), || self.plan(right, rights))
+        } else {
+            (self.plan(left, lefts), self.plan(right, rights))
+        };
+        plan.bounds = lefts[0].bounds.union(&rights[0].bounds);
+        let counts = [lefts[0].count, rights[0].count];
+        plan_inner(
+            plan,
+            counts,
+            &left_costs,
+            &right_costs,
+            self.relative_area(&plan.bounds),
+        )
+    }
+
+    fn relative_area(&self, bounds: &Bounds) -> f32 {
+        (bounds.half_area() / self.root_area) as f32
+    }
+}
+
+fn plan_inner<const N: usize>(
+    plan: &mut Plan<N>,
+    counts: [u32; 2],
+    left: &Costs<N>,
+    right: &Costs<N>,
+    area: f32,
+) -> Costs<N> {
+    let count = counts[0].saturating_add(counts[1]);
+    // No subtree has use for more roots than references.
+    let most = counts.map(|count| (count as usize).min(N - 1));
     // The best distribution of `roots` among the children: its cost and the left child's share.
     let distribute = |roots: usize| {
-        (1..roots)
-            .map(|share| (left.cost[share] + right.cost[roots - share], share as u8))
+        (roots.saturating_sub(most[1]).max(1)..=most[0].min(roots - 1))
+            .map(|share| (left[share] + right[roots - share], share as u8))
             .fold((f32::INFINITY, 0), |best, next| {
                 if next.0 < best.0 { next } else { best }
             })
     };
-    let count = left.count.saturating_add(right.count);
     let packets = (count as usize).div_ceil(N);
     let leaf_cost = if packets <= MAX_LEAF_PACKETS {
         PACKET_COST * packets as f32 * area
     } else {
         f32::INFINITY
     };
-    let (children_cost, left_slots) = distribute(N);
+    let (children_cost, left_slots) = distribute(N.min(most[0] + most[1]));
     let node_cost = area + children_cost;
 
-    let mut plan = Plan {
-        cost: [0.0; N],
-        left_roots: [0; N],
-        left_slots,
-        count,
-    };
-    plan.cost[1] = node_cost;
+    plan.count = count;
+    plan.left_slots = left_slots;
+    let mut costs = [node_cost; N];
     if leaf_cost <= node_cost {
-        plan.cost[1] = leaf_cost;
+        costs[1] = leaf_cost;
         plan.left_slots = 0;
     }
     for roots in 2..N {
+        costs[roots] = costs[roots - 1];
+        if roots > most[0] + most[1] {
+            continue;
+        }
         let (cost, share) = distribute(roots);
-        plan.cost[roots] = plan.cost[roots - 1];
-        if cost < plan.cost[roots] {
-            plan.cost[roots] = cost;
+        if cost < costs[roots] {
+            costs[roots] = cost;
             plan.left_roots[roots] = share;
         }
     }
-    plan
+    costs
 }
 
-/// The binary nodes that become the children of the wide node made from `node`. Only a root that
+/// The box around all references.
+fn bounds_of(references: &[Reference]) -> Bounds {
+    references
+        .par_iter()
+        .map(|reference| reference.bounds)
+        .reduce(|| Bounds::EMPTY, |a, b| a.union(&b))
+}
+
+/// The binary nodes that become the children of the wide node made from `node`, and their number. Only a root that
 /// holds everything in one leaf has itself as its child.
-fn slots_of<const N: usize>(tree: &BinaryTree, plans: &[Plan<N>], node: u32) -> Vec<u32> {
+fn slots_of<const N: usize>(tree: &BinaryTree, plans: &[Plan<N>], node: u32) -> ([u32; N], usize) {
+    let (mut slots, mut used) = ([node; N], 0);
     let share = plans[node as usize].left_slots as usize;
     let (BinaryNode::Inner(left, right), 1..) = (tree.nodes[node as usize], share) else {
-        return vec![node];
+        return (slots, 1);
     };
-    let mut slots = Vec::with_capacity(N);
     let mut pending = vec![(right, N - share), (left, share)];
     while let Some((node, roots)) = pending.pop() {
         let plan = &plans[node as usize];
@@ -164,10 +215,13 @@ fn slots_of<const N: usize>(tree: &BinaryTree, plans: &[Plan<N>], node: u32) -> 
                 pending.push((right, roots - share as usize));
                 pending.push((left, share as usize));
             }
-            _ => slots.push(node),
+            _ => {
+                slots[used] = node;
+                used += 1;
+            }
         }
     }
-    slots
+    (slots, used)
 }
 
 /// Writes the triangles below a binary node, each once, and returns the leaf that holds them.
@@ -175,13 +229,13 @@ fn push_leaf<const N: usize>(
     packets: &mut Vec<TrianglePacket<N>>,
     tree: &BinaryTree,
     node: u32,
+    count: u32,
     references: &[Reference],
     mesh: &Mesh<'_>,
 ) -> Child {
-    let mut prims: Vec<u32> = tree
-        .references_below(node)
-        .into_iter()
-        .map(|reference| references[reference as usize].prim)
+    let mut prims: Vec<u32> = references[tree.references_below(node, count)]
+        .iter()
+        .map(|reference| reference.prim)
         .collect();
     prims.sort_unstable();
     prims.dedup();

@@ -5,8 +5,8 @@
 //! boxes or `N` triangles per instruction.
 //!
 //! ```text
-//! positions, triangles ─ build ─ references ─ binary tree (obvhs) ─ balance ─ collapse ─ Bvh<N>
-//!                                                                                         │ view
+//! positions, triangles ─ build ─ sbvh (binary tree, references) ─ reinsert ─ collapse ─ Bvh<N>
+//!                                                                                        │ view
 //! Ray ─ prepared ray ─ traverse { slab test of N boxes | triangle test of N triangles } ─ Hit
 //! ```
 //!
@@ -21,15 +21,21 @@
 
 mod balance;
 mod binary;
+mod binning;
 mod bounds;
 mod build;
 mod bvh;
+mod clip;
 mod collapse;
 mod filter;
+mod fragment;
+mod partition;
 mod ray;
+mod reinsert;
+mod sbvh;
 mod simd;
 mod slab;
-mod split;
+mod spatial;
 mod traverse;
 mod triangle;
 mod validate;

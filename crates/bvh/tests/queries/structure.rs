@@ -87,6 +87,46 @@ fn equal_input_gives_equal_bytes() {
     }
 }
 
+/// The bytes do not depend on the number of threads, of which large meshes use all.
+#[test]
+fn any_number_of_threads_gives_equal_bytes() {
+    let mut random = Random::new(44);
+    let mut mesh = soup(60_000, 0.01, &mut random);
+    let large = soup(2000, 0.5, &mut random);
+    (0..2000).for_each(|i| mesh.push(large.vertices(i)));
+    for quality in [BuildQuality::Fast, BuildQuality::Medium, BuildQuality::Best] {
+        let bytes = [1, 2, 8].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let bvh = pool
+                .build()
+                .expect("threads")
+                .install(|| build8(&mesh, quality));
+            let bits = |row: [f32; 8]| row.map(f32::to_bits);
+            let nodes: Vec<_> = bvh
+                .nodes()
+                .iter()
+                .map(|node| (node.bounds.map(bits), node.children))
+                .collect();
+            let prims: Vec<_> = bvh.packets().iter().map(|packet| packet.prim_ids).collect();
+            (nodes, prims, bvh.sah_cost().to_bits())
+        });
+        assert!(bytes[0] == bytes[1] && bytes[0] == bytes[2], "{quality:?}");
+    }
+}
+
+/// Splits stay within their budget, and are made where triangles are large.
+#[test]
+fn splits_are_few() {
+    let mut random = Random::new(45);
+    for size in [0.01, 0.1, 1.0] {
+        let mesh = soup(5000, size, &mut random);
+        let bvh = build8(&mesh, BuildQuality::Best);
+        let ids = bvh.packets().iter().flat_map(|packet| packet.prim_ids);
+        let references = ids.filter(|&id| id != u32::MAX).count();
+        assert!((5000..=7500).contains(&references), "{references}");
+    }
+}
+
 /// The builder splits the large triangles only when asked for the best tree, and gains by it.
 #[test]
 fn splitting_lowers_the_cost() {
