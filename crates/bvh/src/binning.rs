@@ -13,9 +13,6 @@ use crate::fragment::{Box3, Fragment, Summary};
 /// The axes of space, and the axis of sizes.
 const AXES: usize = 4;
 const SIZE: usize = 3;
-/// Factor on the cost of divisions by size: they leave the children overlapping, which the surface
-/// area heuristic does not see.
-const SIZE_PENALTY: f32 = 1.15;
 pub(crate) const MAX_BINS: usize = 32;
 /// Fragments for each task where one node's fragments are shared among threads. Fixed, so that the
 /// result does not depend on the threads.
@@ -165,8 +162,7 @@ impl Bins {
                 if left.count == 0 || rights[bin].count == 0 {
                     continue;
                 }
-                let penalty = if axis == SIZE { SIZE_PENALTY } else { 1.0 };
-                let cost = penalty * (left.cost() + costs[bin]);
+                let cost = left.cost() + costs[bin];
                 if best.is_none_or(|best| cost < best.cost) {
                     best = Some(Candidate {
                         cost,
@@ -229,21 +225,26 @@ pub(crate) fn in_chunks(
 /// and returns how many of them go left.
 pub(crate) fn sort_for_best_split(fragments: &mut [Fragment]) -> usize {
     let count = fragments.len();
+    if count == 2 {
+        return 1;
+    }
+    let mut unsorted = [(Vec3A::ZERO, Box3::EMPTY); MAX_SORTED];
+    for (entry, fragment) in unsorted.iter_mut().zip(&*fragments) {
+        *entry = (fragment.center(), fragment.bounds());
+    }
     let mut best = (f32::INFINITY, count / 2, [0; MAX_SORTED]);
     for axis in 0..3 {
-        let mut order: [usize; MAX_SORTED] = std::array::from_fn(|i| i);
-        let keys: [f32; MAX_SORTED] =
-            std::array::from_fn(|i| fragments.get(i).map_or(0.0, |f| f.center()[axis]));
-        order[..count].sort_by(|&i, &j| keys[i].total_cmp(&keys[j]));
+        let order = sorted(count, |i| unsorted[i].0[axis]);
+        let bounds = |i: usize| &unsorted[order[i] as usize % MAX_SORTED].1;
         let mut costs = [0.0; MAX_SORTED];
         let mut right = Box3::EMPTY;
         for i in (1..count).rev() {
-            right = right.union(&fragments[order[i]].bounds());
+            right = right.union(bounds(i));
             costs[i] = right.half_area() * (count - i) as f32;
         }
         let mut left = Box3::EMPTY;
         for i in 1..count {
-            left = left.union(&fragments[order[i - 1]].bounds());
+            left = left.union(bounds(i - 1));
             let cost = left.half_area() * i as f32 + costs[i];
             if cost < best.0 {
                 best = (cost, i, order);
@@ -253,9 +254,25 @@ pub(crate) fn sort_for_best_split(fragments: &mut [Fragment]) -> usize {
     if best.0 < f32::INFINITY {
         let mut sorted = [fragments[0]; MAX_SORTED];
         for i in 0..count {
-            sorted[i] = fragments[best.2[i]];
+            sorted[i] = fragments[best.2[i] as usize];
         }
         fragments.copy_from_slice(&sorted[..count]);
     }
     best.1
+}
+
+/// The first `count` indices in the order of their keys; equal keys keep theirs.
+fn sorted(count: usize, key: impl Fn(usize) -> f32) -> [u8; MAX_SORTED] {
+    let (mut keys, mut order) = ([0.0; MAX_SORTED], [0; MAX_SORTED]);
+    for i in 0..count {
+        let key = key(i);
+        let mut place = i;
+        while place > 0 && keys[place - 1] > key {
+            keys[place] = keys[place - 1];
+            order[place] = order[place - 1];
+            place -= 1;
+        }
+        (keys[place], order[place]) = (key, i as u8);
+    }
+    order
 }

@@ -57,6 +57,18 @@ pub fn build<const N: usize>(
     single_sided: Option<&[bool]>,
     quality: BuildQuality,
 ) -> Bvh<N> {
+    build_with_progress(positions, triangles, single_sided, quality, &|_| ())
+}
+
+/// As [`build`], and calls `report` now and then with the fraction that is done, in [0, 1]: from any
+/// of the threads, and not always in order.
+pub fn build_with_progress<const N: usize>(
+    positions: &[[f32; 3]],
+    triangles: &[[u32; 3]],
+    single_sided: Option<&[bool]>,
+    quality: BuildQuality,
+    report: &(dyn Fn(f32) + Sync),
+) -> Bvh<N> {
     assert!(triangles.len() < 1 << 31, "too many triangles");
     assert!(
         single_sided.is_none_or(|marks| marks.len() == triangles.len()),
@@ -74,11 +86,18 @@ pub fn build<const N: usize>(
     let (splits, rounds): (Splits, &[f32]) = match quality {
         BuildQuality::Fast => (Splits::Objects, &[]),
         BuildQuality::Medium => (Splits::Objects, &[0.3, 0.2, 0.2, 0.2]),
-        BuildQuality::Best => (Splits::ObjectsAndSpace, &[1.0; 8]),
+        // Eight rounds of all nodes gain 0.2 % more, and take three times as long.
+        BuildQuality::Best => (
+            Splits::ObjectsAndSpace,
+            &[1.0, 0.5, 0.33, 0.25, 0.2, 0.17, 0.14, 0.12],
+        ),
     };
-    let (tree, references) = build_tree(&mesh, &prims, splits);
+    let (tree, references) = build_tree(&mesh, &prims, splits, &|done| report(0.6 * done));
     let (tree, references) = reinsert(tree, references, N as u32, rounds);
-    collapse(&tree, &references, &mesh)
+    report(0.8);
+    let bvh = collapse(&tree, &references, &mesh);
+    report(1.0);
+    bvh
 }
 
 /// Whether the vertices are finite and not collinear. In `f64` the products of any two `f32`

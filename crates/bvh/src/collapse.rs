@@ -6,6 +6,8 @@
 //! binary node and every `i < N`, the least cost of representing its subtree by at most `i` wide
 //! nodes or leaves.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::binary::{BinaryNode, BinaryTree};
@@ -71,6 +73,7 @@ pub(crate) fn collapse<const N: usize>(
     // The probability that a ray which enters the root enters the node.
     let area = |node: u32| planner.relative_area(&plans[node as usize].bounds);
 
+    let mut leaves = Leaves::default();
     // Wide nodes in preorder: (binary node, wide node). Parents come before their children.
     let mut pending = vec![(0u32, 0usize)];
     let mut cost = 0.0f64;
@@ -81,7 +84,8 @@ pub(crate) fn collapse<const N: usize>(
         for (slot, &child) in slots[..used].iter().enumerate() {
             let plan = &plans[child as usize];
             let stored = if plan.left_slots == 0 {
-                let leaf = push_leaf(&mut bvh.packets, tree, child, plan.count, references, mesh);
+                let below = tree.references_below(child, plan.count);
+                let leaf = leaves.push::<N>(&references[below]);
                 let tests = PACKET_COST * leaf.packet_count() as f32;
                 cost += f64::from(tests * area(child));
                 leaf
@@ -95,6 +99,11 @@ pub(crate) fn collapse<const N: usize>(
         bvh.nodes[target] = wide;
     }
     bvh.sah_cost = cost as f32;
+    bvh.packets = leaves
+        .packets
+        .par_iter()
+        .map(|packet| packet_of(&leaves.prims[packet.clone()], mesh))
+        .collect();
     check_structure(&bvh.nodes, &bvh.packets).expect("the builder keeps the kernels' contract");
     bvh
 }
@@ -224,24 +233,34 @@ fn slots_of<const N: usize>(tree: &BinaryTree, plans: &[Plan<N>], node: u32) -> 
     (slots, used)
 }
 
-/// Writes the triangles below a binary node, each once, and returns the leaf that holds them.
-fn push_leaf<const N: usize>(
-    packets: &mut Vec<TrianglePacket<N>>,
-    tree: &BinaryTree,
-    node: u32,
-    count: u32,
-    references: &[Reference],
-    mesh: &Mesh<'_>,
-) -> Child {
-    let mut prims: Vec<u32> = references[tree.references_below(node, count)]
-        .iter()
-        .map(|reference| reference.prim)
-        .collect();
-    prims.sort_unstable();
-    prims.dedup();
-    let first = packets.len();
-    packets.extend(prims.chunks(N).map(|prims| packet_of(prims, mesh)));
-    Child::leaf(first, packets.len() - first)
+/// The triangles of all leaves, and which of them make a packet.
+#[derive(Default)]
+struct Leaves {
+    prims: Vec<u32>,
+    packets: Vec<Range<usize>>,
+}
+
+impl Leaves {
+    /// Adds a leaf that holds each of the triangles once.
+    fn push<const N: usize>(&mut self, references: &[Reference]) -> Child {
+        let first = self.prims.len();
+        self.prims
+            .extend(references.iter().map(|reference| reference.prim));
+        self.prims[first..].sort_unstable();
+        let mut last = first;
+        for next in first + 1..self.prims.len() {
+            if self.prims[next] != self.prims[last] {
+                last += 1;
+                self.prims[last] = self.prims[next];
+            }
+        }
+        self.prims.truncate(last + 1);
+        let first_packet = self.packets.len();
+        for start in (first..=last).step_by(N) {
+            self.packets.push(start..(start + N).min(last + 1));
+        }
+        Child::leaf(first_packet, self.packets.len() - first_packet)
+    }
 }
 
 fn packet_of<const N: usize>(prims: &[u32], mesh: &Mesh<'_>) -> TrianglePacket<N> {

@@ -41,7 +41,7 @@ mod triangle;
 mod validate;
 
 pub use bounds::Bounds;
-pub use build::{BuildQuality, build};
+pub use build::{BuildQuality, build, build_with_progress};
 pub use bvh::{Bvh, BvhView, Node, TrianglePacket};
 pub use filter::{AllHits, Culling, FrontHits, HitFilter, MarkedHits};
 pub use ray::{Hit, Ray};

@@ -5,9 +5,10 @@
 //! Each triangle may be split a number of times that is fixed beforehand. So every node knows how
 //! many slots its subtree can need, and nothing depends on which thread is first.
 
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::Vec3A;
+use rayon::prelude::*;
 
 use crate::Bounds;
 use crate::balance::levels_needed;
@@ -24,6 +25,9 @@ const TASK: usize = 1 << 12;
 /// Overlap of an object split's children, relative to the root's area, from which on splits of
 /// space are tried.
 const MIN_OVERLAP: f32 = 1e-4;
+/// Splits of space must cost less than this share of the best object split: the cost does not show
+/// that their parts burden both children at all levels below.
+const SAVING: f32 = 0.9;
 /// Splits allowed for each triangle on average.
 const SPLIT_BUDGET: f64 = 0.5;
 /// Splits allowed for one triangle.
@@ -39,6 +43,10 @@ pub(crate) enum Splits {
 struct Builder<'a> {
     mesh: Mesh<'a>,
     min_overlap: f32,
+    /// Fragments of all subtrees that are done, at most `total` and those that splits have added.
+    done: AtomicUsize,
+    total: usize,
+    report: &'a (dyn Fn(f32) + Sync),
 }
 
 /// A subtree in preorder whose references are numbered from left to right.
@@ -52,6 +60,7 @@ pub(crate) fn build_tree(
     mesh: &Mesh<'_>,
     prims: &[u32],
     splits: Splits,
+    report: &(dyn Fn(f32) + Sync),
 ) -> (BinaryTree, Vec<Reference>) {
     if prims.is_empty() {
         return (BinaryTree { nodes: Vec::new() }, Vec::new());
@@ -63,14 +72,18 @@ pub(crate) fn build_tree(
         Splits::Objects
     };
     let boxes = |&prim: &u32| guide.bounds(mesh, prim);
-    let weight = |bounds: &Box3| f64::from(bounds.half_area()).sqrt();
     let credits_per_weight = match splits {
         Splits::Objects => 0.0,
         Splits::ObjectsAndSpace => {
             // Summed in chunks, whose order is fixed.
             let sums: Vec<f64> = prims
                 .par_chunks(1 << 14)
-                .map(|prims| prims.iter().map(|prim| weight(&boxes(prim))).sum())
+                .map(|prims| {
+                    prims
+                        .iter()
+                        .map(|prim| splitting_weight(mesh, *prim, &boxes(prim)))
+                        .sum()
+                })
                 .collect();
             let total: f64 = sums.iter().sum();
             if total > 0.0 {
@@ -84,7 +97,8 @@ pub(crate) fn build_tree(
         .par_iter()
         .map(|prim| {
             let bounds = boxes(prim);
-            let credits = (weight(&bounds) * credits_per_weight).min(MAX_SPLITS);
+            let credits =
+                (splitting_weight(mesh, *prim, &bounds) * credits_per_weight).min(MAX_SPLITS);
             Fragment::new(*prim, &bounds, credits as u32)
         })
         .collect();
@@ -97,10 +111,22 @@ pub(crate) fn build_tree(
     let builder = Builder {
         mesh: *mesh,
         min_overlap: MIN_OVERLAP * summary.bounds.half_area(),
+        done: AtomicUsize::new(0),
+        total: summary.count,
+        report,
     };
     let subtree = builder.subtree(&mut slots, &summary, 0);
     drop(slots);
     flatten(subtree, mesh, guide.is_exact())
+}
+
+/// How much a triangle gains by being split: what the half area of its box exceeds that of a box
+/// around a parallelogram in a plane along the axes. Splitting the walls of a room costs more than
+/// it gains.
+fn splitting_weight(mesh: &Mesh<'_>, prim: u32, bounds: &Box3) -> f64 {
+    let [a, b, c] = mesh.vertices(prim).map(Vec3A::from_array);
+    let parallelogram = (b - a).cross(c - a).length();
+    f64::from((bounds.half_area() - parallelogram).max(0.0)).sqrt()
 }
 
 impl Builder<'_> {
@@ -111,6 +137,8 @@ impl Builder<'_> {
             };
             let mut fragments = Vec::with_capacity(summary.slots());
             self.append(slots, summary, level, &mut tree, &mut fragments);
+            let done = fragments.len() + self.done.fetch_add(fragments.len(), Ordering::Relaxed);
+            (self.report)((done as f32 / self.total as f32).min(1.0));
             return Subtree::Chunk(tree, fragments);
         }
         let (left, right) = self.split(slots, summary, level);
@@ -169,8 +197,8 @@ impl Builder<'_> {
             if overlap > self.min_overlap {
                 let grid = spatial_grid(summary);
                 let spatial = best_spatial_split(&self.mesh, &slots[..count], &grid);
-                let cheapest = object.map_or(f32::INFINITY, |split| split.cost);
-                if let Some(split) = spatial.filter(|split| split.cost < cheapest) {
+                let limit = object.map_or(f32::INFINITY, |split| SAVING * split.cost);
+                if let Some(split) = spatial.filter(|split| split.cost < limit) {
                     let (left, right) = partition(slots, count, |fragment| {
                         place(&self.mesh, &grid, &split, fragment)
                     });

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use residual_bvh::{Bounds, BuildQuality, Bvh, BvhView, InvalidBvh, Node, build};
+use residual_bvh::{
+    Bounds, BuildQuality, Bvh, BvhView, InvalidBvh, Node, build, build_with_progress,
+};
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
 use crate::runner::Random;
@@ -112,6 +114,20 @@ fn any_number_of_threads_gives_equal_bytes() {
         });
         assert!(bytes[0] == bytes[1] && bytes[0] == bytes[2], "{quality:?}");
     }
+}
+
+/// Progress stays in its range and ends with everything done.
+#[test]
+fn progress_is_reported() {
+    let mut random = Random::new(46);
+    let mesh = soup(30_000, 0.02, &mut random);
+    let reports = std::sync::Mutex::new(Vec::new());
+    let report = |done: f32| reports.lock().expect("no panic").push(done);
+    let quality = BuildQuality::Best;
+    build_with_progress::<8>(&mesh.positions, &mesh.triangles, None, quality, &report);
+    let reports = reports.into_inner().expect("no panic");
+    assert!(reports.len() > 5 && reports.iter().all(|done| (0.0..=1.0).contains(done)));
+    assert_eq!(reports.last(), Some(&1.0));
 }
 
 /// Splits stay within their budget, and are made where triangles are large.
