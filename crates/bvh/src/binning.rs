@@ -243,9 +243,9 @@ pub(crate) fn sort_for_best_split(fragments: &mut [Fragment]) -> usize {
             costs[i] = right.half_area() * (count - i) as f32;
         }
         let mut left = Box3::EMPTY;
-        for i in 1..count {
+        for (i, &right_cost) in costs[..count].iter().enumerate().skip(1) {
             left = left.union(bounds(i - 1));
-            let cost = left.half_area() * i as f32 + costs[i];
+            let cost = left.half_area() * i as f32 + right_cost;
             if cost < best.0 {
                 best = (cost, i, order);
             }

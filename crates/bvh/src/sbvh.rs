@@ -25,9 +25,6 @@ const TASK: usize = 1 << 12;
 /// Overlap of an object split's children, relative to the root's area, from which on splits of
 /// space are tried.
 const MIN_OVERLAP: f32 = 1e-4;
-/// Splits of space must cost less than this share of the best object split: the cost does not show
-/// that their parts burden both children at all levels below.
-const SAVING: f32 = 0.9;
 /// Splits allowed for each triangle on average.
 const SPLIT_BUDGET: f64 = 0.5;
 /// Splits allowed for one triangle.
@@ -197,7 +194,7 @@ impl Builder<'_> {
             if overlap > self.min_overlap {
                 let grid = spatial_grid(summary);
                 let spatial = best_spatial_split(&self.mesh, &slots[..count], &grid);
-                let limit = object.map_or(f32::INFINITY, |split| SAVING * split.cost);
+                let limit = object.map_or(f32::INFINITY, |split| split.cost);
                 if let Some(split) = spatial.filter(|split| split.cost < limit) {
                     let (left, right) = partition(slots, count, |fragment| {
                         place(&self.mesh, &grid, &split, fragment)
