@@ -53,9 +53,9 @@ impl Grid {
         const ROUND: f32 = (1 << 23) as f32;
         let bin = (point - self.origin) * self.scale - Vec3A::splat(0.5);
         let bin = bin.max(Vec3A::ZERO).min(Vec3A::splat(self.last));
-        (bin + Vec3A::splat(ROUND))
-            .to_array()
-            .map(|x| x.to_bits() as usize % MAX_BINS)
+        let [x, y, z] = (bin + Vec3A::splat(ROUND)).to_array();
+        let low = |x: f32| x.to_bits() as usize % MAX_BINS;
+        [low(x), low(y), low(z)]
     }
 
     /// The fragment's bin by its centre on each axis, and by its area relative to the node's: two

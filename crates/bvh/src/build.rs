@@ -33,6 +33,7 @@ pub(crate) struct Mesh<'a> {
 }
 
 impl Mesh<'_> {
+    #[inline]
     pub(crate) fn vertices(&self, prim: u32) -> [[f32; 3]; 3] {
         self.triangles[prim as usize].map(|vertex| self.positions[vertex as usize])
     }

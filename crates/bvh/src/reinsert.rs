@@ -242,8 +242,8 @@ impl LinkedTree {
                     };
                 }
                 let [left, right] = target.children;
-                if left != NONE {
-                    let saved = gain + target.bounds.half_area();
+                let saved = gain + target.bounds.half_area();
+                if left != NONE && saved - area > best.gain {
                     stack.push((saved, left));
                     stack.push((saved, right));
                 }

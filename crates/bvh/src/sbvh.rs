@@ -24,7 +24,7 @@ use crate::spatial::{best_spatial_split, place, spatial_grid};
 const TASK: usize = 1 << 12;
 /// Overlap of an object split's children, relative to the root's area, from which on splits of
 /// space are tried.
-const MIN_OVERLAP: f32 = 1e-4;
+const MIN_OVERLAP: f32 = 1e-3;
 /// Splits allowed for each triangle on average.
 const SPLIT_BUDGET: f64 = 0.5;
 /// Splits allowed for one triangle.

@@ -34,21 +34,28 @@ pub(crate) fn best_spatial_split(
     grid: &Grid,
 ) -> Option<Candidate> {
     let bins: Bins = in_chunks(fragments, grid.bins, |bins, fragment| {
+        let bounds = fragment.bounds();
         let (first, last) = span(grid, fragment);
         for axis in 0..3 {
             bins.starts[axis][first[axis]] += 1;
             bins.ends[axis][last[axis]] += 1;
-            let mut rest = fragment.bounds();
-            if first[axis] < last[axis] {
-                let vertices = mesh.vertices(fragment.prim()).map(Into::into);
-                for bin in first[axis]..last[axis] {
-                    let plane = grid.plane(axis, bin + 1);
-                    let (below, above) = clip(&vertices, &rest, axis, plane);
-                    if !below.is_empty() {
-                        bins.bounds[axis][bin].grow(below.lo, below.hi);
-                    }
-                    rest = above;
+        }
+        if (0..3).all(|axis| first[axis] == last[axis]) {
+            for (bins, bin) in bins.bounds.iter_mut().zip(first) {
+                bins[bin].grow(bounds.lo, bounds.hi);
+            }
+            return;
+        }
+        let vertices = mesh.vertices(fragment.prim()).map(Into::into);
+        for axis in 0..3 {
+            let mut rest = bounds;
+            for bin in first[axis]..last[axis] {
+                let plane = grid.plane(axis, bin + 1);
+                let (below, above) = clip(&vertices, &rest, axis, plane);
+                if !below.is_empty() {
+                    bins.bounds[axis][bin].grow(below.lo, below.hi);
                 }
+                rest = above;
             }
             if !rest.is_empty() {
                 bins.bounds[axis][last[axis]].grow(rest.lo, rest.hi);
