@@ -1,219 +1,61 @@
-//! The binary tree over references: built by obvhs (PLOC with reinsertion), kept as plain
-//! topology, with boxes recomputed from the references.
-//!
-//! D. Meister, J. Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
-//! Construction", TVCG 24(3), 2018, and "Parallel Reinsertion for Bounding Volume Hierarchy
-//! Optimization", Eurographics 2018.
+//! The binary tree over references, as plain topology.
 
 use std::ops::Range;
-
-use glam::Vec3A;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
-
-use crate::build::Reference;
-use crate::{Bounds, BuildQuality};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BinaryNode {
     /// Index of a reference.
     Leaf(u32),
-    /// Indices of both children, greater than the node's own.
+    /// Indices of both children. The left one follows its parent, the right one the left subtree.
     Inner(u32, u32),
 }
 
-/// The root comes first; without references there are no nodes.
+/// Nodes in preorder, over references numbered from left to right; without references there are no
+/// nodes.
 pub(crate) struct BinaryTree {
     pub(crate) nodes: Vec<BinaryNode>,
 }
 
 impl BinaryTree {
-    pub(crate) fn build(references: &[Reference], quality: BuildQuality) -> BinaryTree {
-        if references.is_empty() {
-            return BinaryTree { nodes: Vec::new() };
-        }
-        // obvhs' presets `very_fast_build`, `medium_build` and `very_slow_build`, with one
-        // reference for each leaf: forming larger leaves is the collapse's business.
-        let (search, threshold, reinsertion, precision) = match quality {
-            BuildQuality::Fast => (PlocSearchDistance::Minimum, 0, 0.01, SortPrecision::U64),
-            BuildQuality::Medium => (PlocSearchDistance::Medium, 3, 0.05, SortPrecision::U64),
-            BuildQuality::Best => (PlocSearchDistance::Medium, 1, 1.0, SortPrecision::U128),
-        };
-        let boxes = unit_boxes(references);
-        let (order, groups) = group_equal(&boxes);
-        let unique: Vec<Aabb> = groups
-            .iter()
-            .map(|group| boxes[order[group.start] as usize])
-            .collect();
-        let indices = (0..unique.len() as u32).collect();
-        let mut bvh2 = PlocBuilder::new().build(search, &unique, indices, precision, threshold);
-        reinsert(&mut bvh2, reinsertion);
-
-        // Preorder. Reinsertion leaves children before their parents.
-        let mut nodes = vec![BinaryNode::Leaf(0)];
-        let mut pending = vec![(Source::Node(0), 0usize)];
-        while let Some((source, target)) = pending.pop() {
-            let source = match source {
-                Source::Node(index) if bvh2.nodes[index as usize].is_leaf() => {
-                    let first = bvh2.nodes[index as usize].first_index as usize;
-                    Source::Group(groups[bvh2.primitive_indices[first] as usize].clone())
-                }
-                source => source,
-            };
-            let (left, right) = match source {
-                Source::Group(Range { start, end }) if end - start == 1 => {
-                    nodes[target] = BinaryNode::Leaf(order[start]);
-                    continue;
-                }
-                Source::Group(Range { start, end }) => {
-                    let middle = start.midpoint(end);
-                    (Source::Group(start..middle), Source::Group(middle..end))
-                }
-                Source::Node(index) => {
-                    let first = bvh2.nodes[index as usize].first_index;
-                    (Source::Node(first), Source::Node(first + 1))
-                }
-            };
-            let first = nodes.len();
-            nodes.extend([BinaryNode::Leaf(0); 2]);
-            nodes[target] = BinaryNode::Inner(first as u32, first as u32 + 1);
-            pending.extend([(right, first + 1), (left, first)]);
-        }
-        BinaryTree { nodes }
-    }
-
-    /// The box of each node.
-    pub(crate) fn bounds(&self, references: &[Reference]) -> Vec<Bounds> {
-        self.bottom_up(
-            |reference| references[reference as usize].bounds,
-            |left: &Bounds, right| left.union(right),
-        )
-    }
-
-    /// A value for each node, from its reference or from both children's values.
-    pub(crate) fn bottom_up<T: Clone>(
-        &self,
-        leaf: impl Fn(u32) -> T,
-        inner: impl Fn(&T, &T) -> T,
-    ) -> Vec<T> {
-        let mut values: Vec<Option<T>> = vec![None; self.nodes.len()];
-        for (index, node) in self.nodes.iter().enumerate().rev() {
-            values[index] = Some(match *node {
-                BinaryNode::Leaf(reference) => leaf(reference),
-                BinaryNode::Inner(left, right) => {
-                    let value = |child: u32| values[child as usize].as_ref();
-                    let (left, right) = value(left).zip(value(right)).expect("children come later");
-                    inner(left, right)
-                }
-            });
-        }
-        values.into_iter().flatten().collect()
-    }
-
-    /// The references below a node, from left to right.
-    pub(crate) fn references_below(&self, root: u32) -> Vec<u32> {
-        let mut found = Vec::new();
-        let mut pending = vec![root];
-        while let Some(node) = pending.pop() {
+    /// The references below a node that has `count` of them.
+    pub(crate) fn references_below(&self, mut node: u32, count: u32) -> Range<usize> {
+        loop {
             match self.nodes[node as usize] {
-                BinaryNode::Leaf(reference) => found.push(reference),
-                BinaryNode::Inner(left, right) => pending.extend([right, left]),
+                BinaryNode::Leaf(first) => return first as usize..first as usize + count as usize,
+                BinaryNode::Inner(left, _) => node = left,
             }
         }
-        found
     }
-}
 
-/// Where a node of the binary tree comes from.
-enum Source {
-    /// A node of obvhs' tree.
-    Node(u32),
-    /// References with equal boxes, a range of their order.
-    Group(Range<usize>),
-}
-
-/// The boxes' indices, ordered so that equal boxes are neighbours, and the ranges of equals.
-///
-/// obvhs gets one of each: PLOC merges mutual nearest neighbours, and among more equal boxes than
-/// its search distance it finds none and never ends.
-fn group_equal(boxes: &[Aabb]) -> (Vec<u32>, Vec<Range<usize>>) {
-    let key = |index: u32| {
-        let bounds = &boxes[index as usize];
-        (
-            bounds.min.to_array().map(f32::to_bits),
-            bounds.max.to_array().map(f32::to_bits),
-        )
-    };
-    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-    order.sort_unstable_by_key(|&index| (key(index), index));
-    let mut groups = Vec::new();
-    let mut start = 0;
-    for equals in order.chunk_by(|&a, &b| key(a) == key(b)) {
-        groups.push(start..start + equals.len());
-        start += equals.len();
-    }
-    (order, groups)
-}
-
-/// obvhs' default sequence of reinsertions, the ratio of nodes considered shrinking with each.
-///
-/// One at a time, because obvhs searches with a stack of twice `max_depth`, which reinsertion does
-/// not keep up to date, and panics if that overflows. A tree that is already a list is left alone.
-fn reinsert(bvh2: &mut Bvh2, batch_ratio: f32) {
-    const HOPELESS_DEPTH: usize = 1000;
-    let mut optimizer = ReinsertionOptimizer::default();
-    for divisor in (1..32).step_by(2) {
-        let depth = depth(bvh2);
-        if depth > HOPELESS_DEPTH {
-            return;
+    /// A value for each node, from the number of its reference or from both children's values.
+    pub(crate) fn bottom_up<T: Copy + Default>(
+        &self,
+        leaf: impl Fn(u32) -> T,
+        inner: impl Fn(T, T) -> T,
+    ) -> Vec<T> {
+        let mut values = vec![T::default(); self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            values[index] = match *node {
+                BinaryNode::Leaf(reference) => leaf(reference),
+                BinaryNode::Inner(left, right) => {
+                    inner(values[left as usize], values[right as usize])
+                }
+            };
         }
-        bvh2.max_depth = bvh2.max_depth.max(depth);
-        optimizer.run(bvh2, batch_ratio, Some(vec![1.0 / divisor as f32]));
+        values
     }
 }
 
-fn depth(bvh2: &Bvh2) -> usize {
-    let mut deepest = 0;
-    let mut pending = vec![(0u32, 1usize)];
-    while let Some((index, level)) = pending.pop() {
-        deepest = deepest.max(level);
-        let node = &bvh2.nodes[index as usize];
-        if !node.is_leaf() {
-            pending.extend([
-                (node.first_index, level + 1),
-                (node.first_index + 1, level + 1),
-            ]);
-        }
+/// A node whose children come later: pushes it, and tells the parent of which it is the right child.
+pub(crate) fn push_preorder(
+    nodes: &mut Vec<BinaryNode>,
+    node: BinaryNode,
+    parent: Option<u32>,
+) -> u32 {
+    let index = nodes.len() as u32;
+    nodes.push(node);
+    if let Some(parent) = parent {
+        nodes[parent as usize] = BinaryNode::Inner(parent + 1, index);
     }
-    deepest
-}
-
-/// The references' boxes, moved and scaled into the unit cube if their areas could otherwise
-/// overflow or vanish. They only guide the topology.
-fn unit_boxes(references: &[Reference]) -> Vec<Aabb> {
-    let finite = |x: f32| x.clamp(f32::MIN, f32::MAX) as f64;
-    let all = references
-        .iter()
-        .fold(Bounds::EMPTY, |all, r| all.union(&r.bounds));
-    let extent = (0..3).fold(0.0, |extent, axis| {
-        finite(all.hi[axis]).max(-finite(all.lo[axis])).max(extent)
-    });
-    let (scale, offset) = if (1e-6..1e15).contains(&extent) {
-        (1.0, [0.0; 3])
-    } else {
-        let size = (0..3).fold(0.0, |size: f64, axis| {
-            size.max(finite(all.hi[axis]) - finite(all.lo[axis]))
-        });
-        (1.0 / size, all.lo.map(finite))
-    };
-    let place = |point: [f32; 3]| {
-        let moved = [0, 1, 2].map(|axis| ((finite(point[axis]) - offset[axis]) * scale) as f32);
-        Vec3A::from_array(moved)
-    };
-    references
-        .iter()
-        .map(|r| Aabb::new(place(r.bounds.lo), place(r.bounds.hi)))
-        .collect()
+    index
 }

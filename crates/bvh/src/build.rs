@@ -1,19 +1,19 @@
 //! From a mesh to a hierarchy: which triangles take part, and the steps of the build.
 
-use crate::balance::limit_depth;
-use crate::binary::BinaryTree;
 use crate::collapse::collapse;
-use crate::split::split_references;
+use crate::reinsert::reinsert;
+use crate::sbvh::{Splits, build_tree};
 use crate::{Bounds, Bvh};
+use rayon::prelude::*;
 
 /// How much time the build may spend on the tree's quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BuildQuality {
-    /// For previews.
+    /// From the top down.
     Fast,
-    /// For images that take minutes.
+    /// Then a few subtrees move to where they cost less.
     Medium,
-    /// Splits large triangles and optimises thoroughly.
+    /// Splits large triangles, and moves many subtrees.
     Best,
 }
 
@@ -33,6 +33,7 @@ pub(crate) struct Mesh<'a> {
 }
 
 impl Mesh<'_> {
+    #[inline]
     pub(crate) fn vertices(&self, prim: u32) -> [[f32; 3]; 3] {
         self.triangles[prim as usize].map(|vertex| self.positions[vertex as usize])
     }
@@ -57,6 +58,18 @@ pub fn build<const N: usize, const P: usize>(
     single_sided: Option<&[bool]>,
     quality: BuildQuality,
 ) -> Bvh<N, P> {
+    build_with_progress(positions, triangles, single_sided, quality, &|_| ())
+}
+
+/// As [`build`], and calls `report` now and then with the fraction that is done, in [0, 1]: from any
+/// of the threads, and not always in order.
+pub fn build_with_progress<const N: usize, const P: usize>(
+    positions: &[[f32; 3]],
+    triangles: &[[u32; 3]],
+    single_sided: Option<&[bool]>,
+    quality: BuildQuality,
+    report: &(dyn Fn(f32) + Sync),
+) -> Bvh<N, P> {
     assert!(triangles.len() < 1 << 31, "too many triangles");
     assert!(
         single_sided.is_none_or(|marks| marks.len() == triangles.len()),
@@ -68,23 +81,24 @@ pub fn build<const N: usize, const P: usize>(
         single_sided,
     };
     let prims: Vec<u32> = (0..triangles.len() as u32)
+        .into_par_iter()
         .filter(|&prim| has_area(&mesh.vertices(prim)))
         .collect();
-    let references = match quality {
-        BuildQuality::Best => split_references(&mesh, &prims),
-        BuildQuality::Fast | BuildQuality::Medium => whole_references(&mesh, &prims),
+    let (splits, rounds): (Splits, &[f32]) = match quality {
+        BuildQuality::Fast => (Splits::Objects, &[]),
+        BuildQuality::Medium => (Splits::Objects, &[0.3, 0.2, 0.2, 0.2]),
+        // Eight rounds of all nodes gain 0.2 % more, and take three times as long.
+        BuildQuality::Best => (
+            Splits::ObjectsAndSpace,
+            &[1.0, 0.5, 0.33, 0.25, 0.2, 0.17, 0.14, 0.12],
+        ),
     };
-    let tree = limit_depth(BinaryTree::build(&references, quality));
-    collapse(&tree, &references, &mesh)
-}
-
-/// One reference for each triangle.
-pub(crate) fn whole_references(mesh: &Mesh<'_>, prims: &[u32]) -> Vec<Reference> {
-    let whole = |&prim: &u32| Reference {
-        prim,
-        bounds: Bounds::of_padded_triangle(&mesh.vertices(prim)),
-    };
-    prims.iter().map(whole).collect()
+    let (tree, references) = build_tree(&mesh, &prims, splits, &|done| report(0.6 * done));
+    let (tree, references) = reinsert(tree, references, P as u32, rounds);
+    report(0.8);
+    let bvh = collapse(&tree, &references, &mesh);
+    report(1.0);
+    bvh
 }
 
 /// Whether the vertices are finite and not collinear. In `f64` the products of any two `f32`

@@ -5,8 +5,8 @@
 //! boxes or `N` triangles per instruction.
 //!
 //! ```text
-//! positions, triangles ─ build ─ references ─ binary tree (obvhs) ─ balance ─ collapse ─ Bvh<N>
-//!                                                                                         │ view
+//! positions, triangles ─ build ─ sbvh (binary tree, references) ─ reinsert ─ collapse ─ Bvh<N>
+//!                                                                                        │ view
 //! Ray ─ prepared ray ─ traverse { slab test of N boxes | triangle test of N triangles } ─ Hit
 //! ```
 //!
@@ -21,19 +21,25 @@
 
 mod balance;
 mod binary;
+mod binning;
 mod bounds;
 mod build;
 mod bvh;
+mod clip;
 mod collapse;
 mod columns;
 mod filter;
+mod fragment;
 mod packet;
+mod partition;
 mod precision;
 mod ray;
+mod reinsert;
+mod sbvh;
 mod simd;
 mod single;
 mod slab;
-mod split;
+mod spatial;
 mod stack;
 mod stream;
 mod traverse;
@@ -41,7 +47,7 @@ mod triangle;
 mod validate;
 
 pub use bounds::Bounds;
-pub use build::{BuildQuality, build};
+pub use build::{BuildQuality, build, build_with_progress};
 pub use bvh::{Bvh, BvhView, Node, TrianglePacket};
 pub use filter::{AllHits, Culling, FrontHits, HitFilter, MarkedHits};
 pub use precision::{Fast, Precision, Watertight};

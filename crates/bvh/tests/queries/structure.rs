@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use residual_bvh::{Bounds, BuildQuality, Bvh, BvhView, InvalidBvh, Node, build};
+use residual_bvh::{
+    Bounds, BuildQuality, Bvh, BvhView, InvalidBvh, Node, build, build_with_progress,
+};
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
 use crate::runner::Random;
@@ -84,6 +86,60 @@ fn equal_input_gives_equal_bytes() {
             format!("{:?}{:?}", bvh.nodes(), bvh.packets())
         };
         assert!(text() == text());
+    }
+}
+
+/// The bytes do not depend on the number of threads, of which large meshes use all.
+#[test]
+fn any_number_of_threads_gives_equal_bytes() {
+    let mut random = Random::new(44);
+    let mut mesh = soup(60_000, 0.01, &mut random);
+    let large = soup(2000, 0.5, &mut random);
+    (0..2000).for_each(|i| mesh.push(large.vertices(i)));
+    for quality in [BuildQuality::Fast, BuildQuality::Medium, BuildQuality::Best] {
+        let bytes = [1, 2, 8].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let bvh = pool
+                .build()
+                .expect("threads")
+                .install(|| build8(&mesh, quality));
+            let bits = |row: [f32; 8]| row.map(f32::to_bits);
+            let nodes: Vec<_> = bvh
+                .nodes()
+                .iter()
+                .map(|node| (node.bounds.map(bits), node.children))
+                .collect();
+            let prims: Vec<_> = bvh.packets().iter().map(|packet| packet.prim_ids).collect();
+            (nodes, prims, bvh.sah_cost().to_bits())
+        });
+        assert!(bytes[0] == bytes[1] && bytes[0] == bytes[2], "{quality:?}");
+    }
+}
+
+/// Progress stays in its range and ends with everything done.
+#[test]
+fn progress_is_reported() {
+    let mut random = Random::new(46);
+    let mesh = soup(30_000, 0.02, &mut random);
+    let reports = std::sync::Mutex::new(Vec::new());
+    let report = |done: f32| reports.lock().expect("no panic").push(done);
+    let quality = BuildQuality::Best;
+    build_with_progress::<8, 8>(&mesh.positions, &mesh.triangles, None, quality, &report);
+    let reports = reports.into_inner().expect("no panic");
+    assert!(reports.len() > 5 && reports.iter().all(|done| (0.0..=1.0).contains(done)));
+    assert_eq!(reports.last(), Some(&1.0));
+}
+
+/// Splits stay within their budget, and are made where triangles are large.
+#[test]
+fn splits_are_few() {
+    let mut random = Random::new(45);
+    for size in [0.01, 0.1, 1.0] {
+        let mesh = soup(5000, size, &mut random);
+        let bvh = build8(&mesh, BuildQuality::Best);
+        let ids = bvh.packets().iter().flat_map(|packet| packet.prim_ids);
+        let references = ids.filter(|&id| id != u32::MAX).count();
+        assert!((5000..=7500).contains(&references), "{references}");
     }
 }
 
