@@ -214,6 +214,7 @@ pub fn builds() -> Vec<Build> {
             vec![$(
                 builds!($n, "fast", |trees| build_tree::<$n, $n>(trees.mesh, BuildQuality::Fast).cost),
                 builds!($n, "medium", |trees| build_tree::<$n, $n>(trees.mesh, BuildQuality::Medium).cost),
+                builds!($n, "high", |trees| build_tree::<$n, $n>(trees.mesh, BuildQuality::High).cost),
                 builds!($n, "best", |trees| trees.get::<$n, $n>().cost),
             )*]
         };

@@ -168,12 +168,12 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     Ok(())
 }
 
-/// The better hierarchies take 13 s for a million triangles on one core; beyond that, images come sooner from plain ones.
+/// The best hierarchy takes 6 s for a million triangles and saves a tenth of the tracing; the next takes less than 1 s.
 fn quality(triangles: usize) -> BuildQuality {
     match triangles {
-        0..=1_000_000 => BuildQuality::Best,
-        1_000_001..=3_000_000 => BuildQuality::Medium,
-        _ => BuildQuality::Fast,
+        0..=150_000 => BuildQuality::Best,
+        150_001..=10_000_000 => BuildQuality::High,
+        _ => BuildQuality::Medium,
     }
 }
 
