@@ -128,6 +128,10 @@ pub fn variants() -> Vec<Variant> {
         Packet(Packets::<16>, 16): 16 x 16, Fast;
         Hybrid(Hybrid::<4>, 4): 4 x 4, Fast;
         Hybrid(Hybrid::<8>, 8): 8 x 8, Fast;
+        Hybrid(Hybrid::<16>, 16): 4 x 4, Fast;
+        Hybrid(Hybrid::<16>, 16): 8 x 4, Fast;
+        Hybrid(Hybrid::<16>, 16): 8 x 8, Fast;
+        Hybrid(Hybrid::<16>, 16): 16 x 8, Fast;
         Hybrid(Hybrid::<16>, 16): 16 x 16, Fast;
         Hybrid(Hybrid::<4>, 4): 4 x 4, Watertight;
         Hybrid(Hybrid::<8>, 8): 8 x 8, Watertight;

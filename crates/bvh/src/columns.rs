@@ -1,30 +1,31 @@
 //! A packet of rays in columns, as vector lanes want them.
 
+use crate::ray::interval;
 use crate::slab::{LEAST, Octant};
-use crate::triangle::Axes;
+use crate::stream::Class;
+use crate::triangle::ordered;
 use crate::{Lanes, Ray};
 
-/// `R` valid rays.
+/// `R` rays.
 #[derive(Clone, Copy)]
 pub(crate) struct Columns<const R: usize> {
     /// `[axis][ray]`
     pub(crate) org: [[f32; R]; 3],
     /// `[axis][ray]`
     pub(crate) dir: [[f32; R]; 3],
-    /// Not negative.
     pub(crate) tmin: [f32; R],
     pub(crate) tmax: [f32; R],
 }
 
 impl<const R: usize> Columns<R> {
-    /// The rays that `members` number. What room is left repeats the first; its interval is empty.
+    /// The rays that `members` number. What room is left repeats the first.
     #[inline(always)]
     pub(crate) fn gather(rays: &[Ray], members: &[u16]) -> Columns<R> {
         let mut columns = Columns {
             org: [[0.0; R]; 3],
             dir: [[0.0; R]; 3],
             tmin: [0.0; R],
-            tmax: [-1.0; R],
+            tmax: [0.0; R],
         };
         for lane in 0..R {
             let member = members[if lane < members.len() { lane } else { 0 }];
@@ -33,27 +34,56 @@ impl<const R: usize> Columns<R> {
                 columns.org[axis][lane] = ray.org[axis];
                 columns.dir[axis][lane] = ray.dir[axis];
             }
-            let (tmin, tmax) = ray.interval();
-            columns.tmin[lane] = tmin;
-            if lane < members.len() {
-                columns.tmax[lane] = tmax;
-            }
+            columns.tmin[lane] = ray.tmin;
+            columns.tmax[lane] = ray.tmax;
         }
         columns
     }
 
-    /// How far the directions spread: the greatest difference of their slopes, which lie in
-    /// [-1, 1] for rays with this order of axes.
+    /// The class of all rays, if they are valid and have one.
     #[inline(always)]
-    pub(crate) fn spread(&self, [kx, ky, kz]: Axes) -> f32 {
-        let spread = |axis: usize| {
-            let mut slopes = [0.0; R];
-            for (lane, slope) in slopes.iter_mut().enumerate() {
-                *slope = self.dir[axis][lane] / self.dir[kz][lane];
-            }
-            greatest(slopes) - least(slopes)
+    pub(crate) fn class<S: Lanes<R>>(&self, simd: S) -> Option<Class> {
+        let all = u32::MAX >> (32 - R);
+        let uniform = |lanes: u32| (lanes == 0 || lanes == all).then_some(lanes != 0);
+
+        let largest = simd.splat(f32::MAX);
+        let load = |column: &[f32; R]| simd.load(column);
+        let size = [0, 1, 2].map(|axis| simd.abs(load(&self.dir[axis])));
+        let finite = |size: S::Float| simd.bits(simd.le(size, largest));
+        let mut valid = simd.bits(simd.le(load(&self.tmin), load(&self.tmax)));
+        for axis in 0..3 {
+            valid &= finite(size[axis]) & finite(simd.abs(load(&self.org[axis])));
+        }
+        let longest = simd.max_number(simd.max_number(size[0], size[1]), size[2]);
+        valid &= simd.bits(simd.le(simd.splat(f32::MIN_POSITIVE), longest));
+        if valid != all {
+            return None;
+        }
+
+        let not_less = |a: usize, b: usize| simd.bits(simd.le(size[b], size[a]));
+        let greatest = if uniform(not_less(2, 0) & not_less(2, 1))? {
+            2
+        } else {
+            usize::from(uniform(not_less(1, 0))?)
         };
-        spread(kx).max(spread(ky))
+        let zero = simd.splat(0.0);
+        let negative = |axis: usize| uniform(simd.bits(simd.lt(load(&self.dir[axis]), zero)));
+        let octant = [negative(0)?, negative(1)?, negative(2)?];
+        Some(Class {
+            octant,
+            axes: ordered(greatest, octant[greatest]),
+        })
+    }
+
+    /// Clips the intervals to what the kernels search, see [`Ray::interval`], and empties those
+    /// behind the first `count`.
+    #[inline(always)]
+    pub(crate) fn clip(&mut self, count: usize) {
+        for lane in 0..R {
+            let (tmin, tmax) = interval(self.tmin[lane], self.tmax[lane]);
+            self.tmin[lane] = tmin;
+            self.tmax[lane] = if lane < count { tmax } else { -1.0 };
+        }
     }
 
     /// The inverse directions, as for single rays.

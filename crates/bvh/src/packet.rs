@@ -8,14 +8,14 @@
 
 use std::mem::MaybeUninit;
 
-use crate::bvh::{Child, MAX_DEPTH};
+use crate::bvh::{Child, MAX_DEPTH, SINGLE_SIDED};
 use crate::columns::{Columns, greatest};
 use crate::filter::improve;
-use crate::single::search;
+use crate::single::{query, search};
 use crate::slab::Slab;
 use crate::stream::Class;
-use crate::triangle::{OneTriangle, Shear};
-use crate::{BvhView, Hit, HitFilter, Lanes, Precision, Ray};
+use crate::triangle::{LaneHits, OneTriangle, Shear};
+use crate::{BvhView, Culling, Hit, HitFilter, Lanes, Precision, Ray};
 
 /// What stays the same for all packets of a stream.
 pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F> {
@@ -26,9 +26,6 @@ pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F> {
     /// So many rays of a packet, or fewer, are traced as single rays.
     pub(crate) few: u32,
 }
-
-/// Rays whose slopes differ by more than this are not worth a packet.
-const SPREAD: f32 = 0.25;
 
 /// A subtree yet to visit.
 #[derive(Clone, Copy)]
@@ -46,10 +43,20 @@ const STACK_CAPACITY: usize = MAX_DEPTH * 16;
 impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
     PacketKernel<'_, S, N, P, Pr, F>
 {
-    /// Traces at most `R` rays of one class, which `members` number: improves their hits.
+    /// Traces one ray alone.
+    #[inline(always)]
+    pub(crate) fn single<const ANY: bool>(&self, ray: &Ray) -> Hit
+    where
+        S: Lanes<N> + Lanes<P>,
+    {
+        query::<S, N, P, Pr, F, ANY>(self.simd, self.precision, self.bvh, ray, self.filter)
+    }
+
+    /// Traces at most `R` rays of one class, which `members` number and `columns` hold.
     #[inline(always)]
     pub(crate) fn trace<const R: usize, const ANY: bool>(
         &self,
+        mut columns: Columns<R>,
         rays: &[Ray],
         members: &[u16],
         class: Class,
@@ -57,27 +64,14 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
     ) where
         S: Lanes<N> + Lanes<P> + Lanes<R>,
     {
-        if members.len() as u32 <= self.few {
-            for &member in members {
-                self.single::<ANY>(Child::ROOT, rays, member, hits);
-            }
-            return;
-        }
         let simd = self.simd;
-        let columns = Columns::<R>::gather(rays, members);
-        if self.few > 0 && columns.spread(class.axes) > SPREAD {
-            for &member in members {
-                self.single::<ANY>(Child::ROOT, rays, member, hits);
-            }
-            return;
-        }
+        columns.clip(members.len());
         let envelope = Slab::<S, N>::enclosing(simd, &columns, class.octant);
         let slab = Slab::<S, R>::of_rays(simd, &columns, class.octant);
         let shear = Shear::<S, R>::of_rays(simd, &columns, rays, members, class.axes);
 
-        // Lanes left over find nothing: their interval ends before it begins.
-        let mut tmax = columns.tmax;
-        let mut farthest = greatest(tmax);
+        let mut best = Best::new(&columns);
+        let mut farthest = greatest(best.t);
         let mut alive = u32::MAX >> (32 - members.len());
         let mut stack = [const { MaybeUninit::<Entry>::uninit() }; STACK_CAPACITY];
         let mut len = 0;
@@ -86,13 +80,25 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
         loop {
             if active.count_ones() <= self.few {
                 for lane in lanes(active) {
-                    let hit = self.single::<ANY>(child, rays, members[lane], hits);
-                    tmax[lane] = if ANY && hit.is_hit() { -1.0 } else { hit.t };
+                    // SAFETY: this is the root or a child of one of the hierarchy's nodes.
+                    let hit = unsafe {
+                        search::<S, N, P, Pr, F, ANY>(
+                            simd,
+                            self.precision,
+                            self.bvh,
+                            child,
+                            &rays[members[lane] as usize],
+                            columns.tmin[lane],
+                            self.filter,
+                            best.hit(lane),
+                        )
+                    };
+                    best.set::<ANY>(lane, &hit);
                 }
-                farthest = greatest(tmax);
+                farthest = greatest(best.t);
             } else if child.is_leaf() {
-                if self.leaf::<R, ANY>(child, &shear, rays, members, &mut tmax, hits) {
-                    farthest = greatest(tmax);
+                if self.leaf::<R, ANY>(child, &shear, &mut best) {
+                    farthest = greatest(best.t);
                 }
             } else {
                 // SAFETY: children that are not leaves index the nodes of a sound hierarchy.
@@ -105,7 +111,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
                     // The last first: pushed in reverse, children come in their order.
                     let slot = (31 - touched.leading_zeros()) as usize % N;
                     touched &= !(1 << slot);
-                    let touching = active & slab.touching_rays(simd, node, slot, &tmax);
+                    let touching = active & slab.touching_rays(simd, node, slot, &best.t);
                     if touching == 0 {
                         continue;
                     }
@@ -131,65 +137,43 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
             }
             if ANY {
                 alive = 0;
-                for (lane, &tmax) in tmax.iter().enumerate() {
+                for (lane, &tmax) in best.t.iter().enumerate() {
                     alive |= u32::from(tmax >= 0.0) << lane;
                 }
             }
-            loop {
+            let next = loop {
                 if len == 0 {
-                    return;
+                    break None;
                 }
                 len -= 1;
                 // SAFETY: this was below `len` until now.
                 let entry = unsafe { stack[len].assume_init() };
                 if entry.rays & alive != 0 && entry.distance <= farthest {
-                    (child, active) = (entry.child, entry.rays & alive);
-                    break;
+                    break Some(entry);
                 }
+            };
+            match next {
+                Some(entry) => (child, active) = (entry.child, entry.rays & alive),
+                None => break,
             }
+        }
+        for (lane, &member) in members.iter().enumerate() {
+            let hit = best.hit(lane);
+            hits[member as usize] = if hit.is_hit() {
+                hit
+            } else {
+                Hit::miss(rays[member as usize].tmax)
+            };
         }
     }
 
-    /// Traces one ray alone.
-    #[inline(always)]
-    fn single<const ANY: bool>(
-        &self,
-        start: Child,
-        rays: &[Ray],
-        member: u16,
-        hits: &mut [Hit],
-    ) -> Hit
-    where
-        S: Lanes<N> + Lanes<P>,
-    {
-        let (ray, hit) = (&rays[member as usize], &mut hits[member as usize]);
-        // SAFETY: the start is the root or a child of one of the hierarchy's nodes.
-        *hit = unsafe {
-            search::<S, N, P, Pr, F, ANY>(
-                self.simd,
-                self.precision,
-                self.bvh,
-                start,
-                ray,
-                ray.interval().0,
-                self.filter,
-                *hit,
-            )
-        };
-        *hit
-    }
-
-    /// Tests the leaf's triangles. Returns whether there were hits; where any will do, the
-    /// interval of those that found one ends.
+    /// Tests the leaf's triangles. Returns whether there were hits.
     #[inline(always)]
     fn leaf<const R: usize, const ANY: bool>(
         &self,
         leaf: Child,
         shear: &Shear<'_, S, R>,
-        rays: &[Ray],
-        members: &[u16],
-        tmax: &mut [f32; R],
-        hits: &mut [Hit],
+        best: &mut Best<R>,
     ) -> bool
     where
         S: Lanes<R>,
@@ -199,31 +183,105 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
         let first = leaf.first_packet();
         for packet in &self.bvh.packets()[first..first + leaf.packet_count()] {
             for lane in 0..P {
-                if packet.prim_ids[lane] == u32::MAX {
+                let prim = packet.prim_ids[lane];
+                if prim == u32::MAX {
                     break;
                 }
                 let triangle = OneTriangle { packet, lane };
-                let ends = simd.load(tmax);
+                let ends = simd.load(&best.t);
                 let test = self.precision.test(simd, shear, triangle, ends, F::CULLING);
-                let Some(test) = test else { continue };
+                let Some(mut test) = test else { continue };
+                // Rays that are strictly nearer need no second look, unless there is a filter.
+                if !F::REJECTS && !matches!(F::CULLING, Culling::PerTriangle) {
+                    let nearer = test.lanes & simd.bits(simd.lt(test.t, ends));
+                    best.improve::<S, ANY>(simd, &test, nearer, prim & !SINGLE_SIDED);
+                    test.lanes &= !nearer;
+                    found |= nearer != 0;
+                }
+                if test.lanes == 0 {
+                    continue;
+                }
                 let (t, u, v) = test.store(simd);
-                for ray in lanes(test.lanes) {
+                for lane in lanes(test.lanes) {
                     let hit = Hit {
-                        t: t[ray],
-                        u: u[ray],
-                        v: v[ray],
-                        prim: packet.prim_ids[lane],
+                        t: t[lane],
+                        u: u[lane],
+                        v: v[lane],
+                        prim,
                     };
-                    let back = test.back >> ray & 1 == 1;
-                    let member = members[ray] as usize;
-                    if improve(&mut hits[member], hit, back, &rays[member], self.filter) {
+                    let back = test.back >> lane & 1 == 1;
+                    let mut improved = best.hit(lane);
+                    if improve(&mut improved, hit, back, shear.ray(lane), self.filter) {
+                        best.set::<ANY>(lane, &improved);
                         found = true;
-                        tmax[ray] = if ANY { -1.0 } else { hit.t };
                     }
                 }
             }
         }
         found
+    }
+}
+
+/// The rays' hits so far.
+struct Best<const R: usize> {
+    /// Where the interval ends: at the hit, or where any will do, before it begins. So it does in
+    /// lanes left over.
+    t: [f32; R],
+    u: [f32; R],
+    v: [f32; R],
+    /// The bits of triangle numbers.
+    prim: [f32; R],
+}
+
+impl<const R: usize> Best<R> {
+    #[inline(always)]
+    fn new(columns: &Columns<R>) -> Best<R> {
+        Best {
+            t: columns.tmax,
+            u: [0.0; R],
+            v: [0.0; R],
+            prim: [f32::from_bits(Hit::NONE); R],
+        }
+    }
+
+    #[inline(always)]
+    fn hit(&self, lane: usize) -> Hit {
+        Hit {
+            t: self.t[lane],
+            u: self.u[lane],
+            v: self.v[lane],
+            prim: self.prim[lane].to_bits(),
+        }
+    }
+
+    #[inline(always)]
+    fn set<const ANY: bool>(&mut self, lane: usize, hit: &Hit) {
+        self.t[lane] = if ANY && hit.is_hit() { -1.0 } else { hit.t };
+        self.u[lane] = hit.u;
+        self.v[lane] = hit.v;
+        self.prim[lane] = f32::from_bits(hit.prim);
+    }
+
+    /// Takes the hits of some lanes with one triangle.
+    #[inline(always)]
+    fn improve<S: Lanes<R>, const ANY: bool>(
+        &mut self,
+        simd: S,
+        hits: &LaneHits<S, R>,
+        lanes: u32,
+        prim: u32,
+    ) {
+        let replace = |column: &mut [f32; R], new: S::Float| {
+            simd.store(simd.select(lanes, new, simd.load(column)), column);
+        };
+        replace(&mut self.prim, simd.splat(f32::from_bits(prim)));
+        if ANY {
+            replace(&mut self.t, simd.splat(-1.0));
+        } else {
+            replace(&mut self.t, hits.t);
+            replace(&mut self.u, hits.u);
+            replace(&mut self.v, hits.v);
+        }
     }
 }
 

@@ -36,18 +36,20 @@ impl Ray {
             & (self.tmin <= self.tmax)
     }
 
-    /// The interval that the kernels search: `tmin` at least `+0.0`, `tmax` at most `f32::MAX`.
+    /// The interval that the kernels search.
     #[inline(always)]
     pub(crate) fn interval(&self) -> (f32, f32) {
-        (
-            if self.tmin > 0.0 { self.tmin } else { 0.0 },
-            if self.tmax < f32::MAX {
-                self.tmax
-            } else {
-                f32::MAX
-            },
-        )
+        interval(self.tmin, self.tmax)
     }
+}
+
+/// The interval that the kernels search: `tmin` at least `+0.0`, `tmax` at most `f32::MAX`.
+#[inline(always)]
+pub(crate) fn interval(tmin: f32, tmax: f32) -> (f32, f32) {
+    (
+        if tmin > 0.0 { tmin } else { 0.0 },
+        if tmax < f32::MAX { tmax } else { f32::MAX },
+    )
 }
 
 /// Where a ray meets a triangle, at `(1 - u - v) v0 + u v1 + v v2`.

@@ -49,6 +49,8 @@ pub trait Lanes<const N: usize>: fearless_simd::Simd {
     fn lt(self, a: Self::Float, b: Self::Float) -> Self::Mask;
     /// Both.
     fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// `a` in the lanes whose bits are set, `b` in the others.
+    fn select(self, bits: u32, a: Self::Float, b: Self::Float) -> Self::Float;
     /// Lane `i` in bit `i`.
     fn bits(self, mask: Self::Mask) -> u32;
 }
@@ -134,6 +136,10 @@ macro_rules! implement_lanes {
                 a & b
             }
             #[inline(always)]
+            fn select(self, bits: u32, a: $float<S>, b: $float<S>) -> $float<S> {
+                <$mask<S> as SimdMask<S>>::from_bitmask(self, u64::from(bits)).select(a, b)
+            }
+            #[inline(always)]
             fn bits(self, mask: $mask<S>) -> u32 {
                 mask.to_bitmask() as u32
             }
@@ -211,6 +217,16 @@ macro_rules! implement_narrow_lanes {
             #[inline(always)]
             fn and(self, a: [bool; $n], b: [bool; $n]) -> [bool; $n] {
                 zip(a, b, |a, b| a & b)
+            }
+            #[inline(always)]
+            fn select(self, bits: u32, a: [f32; $n], b: [f32; $n]) -> [f32; $n] {
+                std::array::from_fn(|lane| {
+                    if bits >> lane & 1 == 1 {
+                        a[lane]
+                    } else {
+                        b[lane]
+                    }
+                })
             }
             #[inline(always)]
             fn bits(self, mask: [bool; $n]) -> u32 {

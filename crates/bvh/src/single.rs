@@ -41,8 +41,16 @@ where
     query::<S, N, P, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
 }
 
+/// Either query; where any hit will do, the hit is any.
 #[inline(always)]
-fn query<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>(
+pub(crate) fn query<
+    S,
+    const N: usize,
+    const P: usize,
+    Pr: Precision,
+    F: HitFilter,
+    const ANY: bool,
+>(
     simd: S,
     precision: Pr,
     bvh: BvhView<'_, N, P>,

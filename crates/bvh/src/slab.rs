@@ -29,7 +29,7 @@ pub(crate) type Octant = [bool; 3];
 
 #[inline(always)]
 pub(crate) fn octant(ray: &Ray) -> Octant {
-    ray.dir.map(f32::is_sign_negative)
+    ray.dir.map(|x| x < 0.0)
 }
 
 /// `scale` and `shift` of the entry and the exit planes' distances, `[axis]`.
@@ -72,11 +72,8 @@ fn inverse(ray: &Ray) -> [f32; 3] {
     let [x, y, z] = ray.dir.map(f32::abs);
     let least = x.max(y).max(z) * LEAST;
     let inverse = |x: f32| {
-        1.0 / if x.abs() < least {
-            least.copysign(x)
-        } else {
-            x
-        }
+        let size = x.abs().max(least);
+        1.0 / if x < 0.0 { -size } else { size }
     };
     [
         inverse(ray.dir[0]),

@@ -1,5 +1,6 @@
 //! Streams of rays, and the ways to trace them.
 
+use crate::columns::Columns;
 use crate::packet::PacketKernel;
 use crate::slab::{Octant, octant};
 use crate::triangle::{Axes, axes};
@@ -152,6 +153,17 @@ implement_packet_kernel!(Hybrid, R as u32 / 4);
 /// Rays that are sorted into packets together.
 const WINDOW: usize = 256;
 
+/// The numbers of rays that are in order as they are.
+const IN_ORDER: [u16; 32] = {
+    let mut order = [0; 32];
+    let mut i = 0;
+    while i < 32 {
+        order[i] = i as u16;
+        i += 1;
+    }
+    order
+};
+
 /// What the rays of a packet have in common.
 #[derive(Clone, Copy)]
 pub(crate) struct Class {
@@ -160,8 +172,8 @@ pub(crate) struct Class {
 }
 
 impl Class {
-    /// Numbers of classes, of which the last is that of invalid rays.
-    const COUNT: usize = 25;
+    /// The number of the class of invalid rays, the greatest.
+    const INVALID: usize = 24;
 
     #[inline(always)]
     fn of(ray: &Ray) -> Class {
@@ -173,19 +185,38 @@ impl Class {
 
     #[inline(always)]
     fn number(ray: &Ray) -> usize {
-        if !ray.is_valid() {
-            return Class::COUNT - 1;
-        }
         let Class { octant, axes } = Class::of(ray);
-        let octant = octant
-            .iter()
-            .fold(0, |number, &negative| 2 * number + usize::from(negative));
-        3 * octant + axes[2]
+        let octant = octant.map(usize::from);
+        let number = 8 * axes[2] + 4 * octant[2] + 2 * octant[1] + octant[0];
+        if ray.is_valid() {
+            number
+        } else {
+            Class::INVALID
+        }
     }
 }
 
-/// Sorts at most [`WINDOW`] rays by class, keeping their order in each, and traces packets of
-/// neighbours.
+/// Whether packets are worth while: whether most of some pairs of neighbours have a class in common
+/// and similar slopes.
+#[inline(always)]
+fn is_coherent(rays: &[Ray]) -> bool {
+    const PAIRS: usize = 8;
+    /// Slopes of rays lie in [-1, 1].
+    const SIMILAR: f32 = 0.1;
+    let step = (rays.len() / PAIRS).max(2);
+    let (mut pairs, mut similar) = (0, 0);
+    for pair in rays.chunks(step).filter(|pair| pair.len() > 1) {
+        let [kx, ky, kz] = axes(&pair[0]);
+        let slopes = |ray: &Ray| [ray.dir[kx] / ray.dir[kz], ray.dir[ky] / ray.dir[kz]];
+        let (a, b) = (slopes(&pair[0]), slopes(&pair[1]));
+        let near = (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) < SIMILAR;
+        similar += u32::from(near && Class::number(&pair[0]) == Class::number(&pair[1]));
+        pairs += 1;
+    }
+    2 * similar >= pairs
+}
+
+/// Traces at most [`WINDOW`] rays.
 #[inline(always)]
 fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, const ANY: bool>(
     kernel: &PacketKernel<'_, S, N, P, Pr, F>,
@@ -197,10 +228,43 @@ fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, const ANY: b
     F: HitFilter,
 {
     const { assert!(R <= 32) };
+    let coherent = is_coherent(rays);
+    if kernel.few > 0 && !coherent {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = kernel.single::<ANY>(ray);
+        }
+        return;
+    }
+    // Neighbours make good packets as they come. Others are sorted, more of them at once.
+    if coherent {
+        for (rays, hits) in rays.chunks(R).zip(hits.chunks_mut(R)) {
+            let members = &IN_ORDER[..rays.len()];
+            let columns = Columns::<R>::gather(rays, members);
+            match columns.class(kernel.simd) {
+                Some(class) => kernel.trace::<R, ANY>(columns, rays, members, class, hits),
+                None => sort::<S, N, P, R, _, _, ANY>(kernel, rays, hits),
+            }
+        }
+    } else {
+        sort::<S, N, P, R, _, _, ANY>(kernel, rays, hits);
+    }
+}
+
+/// Sorts at most [`WINDOW`] rays by class, keeping their order in each, and traces packets of
+/// neighbours.
+#[inline(always)]
+fn sort<S, const N: usize, const P: usize, const R: usize, Pr, F, const ANY: bool>(
+    kernel: &PacketKernel<'_, S, N, P, Pr, F>,
+    rays: &[Ray],
+    hits: &mut [Hit],
+) where
+    S: Lanes<N> + Lanes<P> + Lanes<R>,
+    Pr: Precision,
+    F: HitFilter,
+{
     let mut numbers = [0u8; WINDOW];
-    let mut ends = [0u16; Class::COUNT];
-    for ((ray, hit), number) in rays.iter().zip(&mut *hits).zip(&mut numbers) {
-        *hit = Hit::miss(ray.interval().1);
+    let mut ends = [0u16; Class::INVALID + 1];
+    for (ray, number) in rays.iter().zip(&mut numbers) {
         let class = Class::number(ray);
         *number = class as u8;
         ends[class] += 1;
@@ -216,16 +280,21 @@ fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, const ANY: b
         *place += 1;
     }
     let mut start = 0;
-    for &end in &ends[..Class::COUNT - 1] {
+    for &end in &ends[..Class::INVALID] {
         for members in order[start as usize..end as usize].chunks(R) {
-            let class = Class::of(&rays[members[0] as usize]);
-            kernel.trace::<R, ANY>(rays, members, class, hits);
+            if members.len() as u32 > kernel.few {
+                let class = Class::of(&rays[members[0] as usize]);
+                let columns = Columns::gather(rays, members);
+                kernel.trace::<R, ANY>(columns, rays, members, class, hits);
+            } else {
+                for &member in members {
+                    hits[member as usize] = kernel.single::<ANY>(&rays[member as usize]);
+                }
+            }
         }
         start = end;
     }
-    for (ray, hit) in rays.iter().zip(hits) {
-        if !hit.is_hit() {
-            *hit = Hit::miss(ray.tmax);
-        }
+    for &member in &order[start as usize..rays.len()] {
+        hits[member as usize] = Hit::miss(rays[member as usize].tmax);
     }
 }

@@ -52,20 +52,25 @@ pub(crate) type Axes = [usize; 3];
 
 #[inline(always)]
 pub(crate) fn axes(ray: &Ray) -> Axes {
-    // `[greatest][negative]`. A table, because mispredicted branches would cost more than the test
-    // of a packet.
-    const ORDERS: [[Axes; 2]; 3] = [
-        [[1, 2, 0], [2, 1, 0]],
-        [[2, 0, 1], [0, 2, 1]],
-        [[0, 1, 2], [1, 0, 2]],
-    ];
     let [x, y, z] = ray.dir.map(f32::abs);
     let greatest = if (z >= x) & (z >= y) {
         2
     } else {
         usize::from(y >= x)
     };
-    ORDERS[greatest][usize::from(ray.dir[greatest] < 0.0)]
+    ordered(greatest, ray.dir[greatest] < 0.0)
+}
+
+/// The order in which the axis `greatest` comes last; two axes swap for negative directions.
+#[inline(always)]
+pub(crate) fn ordered(greatest: usize, negative: bool) -> Axes {
+    // A table, because mispredicted branches would cost more than the test of a packet.
+    const ORDERS: [[Axes; 2]; 3] = [
+        [[1, 2, 0], [2, 1, 0]],
+        [[2, 0, 1], [0, 2, 1]],
+        [[0, 1, 2], [1, 0, 2]],
+    ];
+    ORDERS[greatest][usize::from(negative)]
 }
 
 /// Rays with the same order of axes, prepared for triangle tests: a translation and a shear take
