@@ -30,8 +30,10 @@ mod collapse;
 mod columns;
 mod filter;
 mod fragment;
+mod instances;
 mod packet;
 mod partition;
+mod placed;
 mod precision;
 mod ray;
 mod reinsert;
@@ -42,6 +44,7 @@ mod slab;
 mod spatial;
 mod stack;
 mod stream;
+mod top_level;
 mod traverse;
 mod triangle;
 mod validate;
@@ -50,6 +53,10 @@ pub use bounds::Bounds;
 pub use build::{BuildQuality, build, build_with_progress};
 pub use bvh::{Bvh, BvhView, Node, TrianglePacket};
 pub use filter::{AllHits, Culling, FrontHits, HitFilter, MarkedHits};
+pub use instances::{
+    Instance, InstanceFault, InstanceHit, InstancedBvh, InvalidInstance, any_instance_hit,
+    closest_instance_hit,
+};
 pub use precision::{Fast, Precision, Watertight};
 pub use ray::{Hit, Ray};
 pub use simd::Lanes;
