@@ -38,6 +38,7 @@ mod precision;
 mod ray;
 mod reinsert;
 mod sbvh;
+mod serial;
 mod simd;
 mod single;
 mod slab;
@@ -59,6 +60,7 @@ pub use instances::{
 };
 pub use precision::{Fast, Precision, Watertight};
 pub use ray::{Hit, Ray};
+pub use serial::LoadError;
 pub use simd::Lanes;
 pub use single::{any_hit, closest_hit};
 pub use stream::{Hybrid, Kernel, Packets, Single};

@@ -7,5 +7,6 @@ mod mesh;
 mod oracle;
 mod robustness;
 mod runner;
+mod serial;
 mod structure;
 mod watertight;
