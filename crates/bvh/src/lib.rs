@@ -36,6 +36,7 @@ mod partition;
 mod placed;
 mod precision;
 mod ray;
+mod refit;
 mod reinsert;
 mod sbvh;
 mod serial;

@@ -5,6 +5,7 @@ mod agreement;
 mod instances;
 mod mesh;
 mod oracle;
+mod refit;
 mod robustness;
 mod runner;
 mod serial;
