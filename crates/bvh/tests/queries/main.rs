@@ -2,6 +2,7 @@
 //! catalogue of hard numerical cases.
 
 mod agreement;
+mod dispatched;
 mod instances;
 mod mesh;
 mod oracle;
