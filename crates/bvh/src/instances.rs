@@ -16,6 +16,7 @@ use crate::single::search;
 use crate::slab::Slab;
 use crate::top_level::build_top_level;
 use crate::traverse::{Visitor, traverse};
+use crate::validate::check_nodes;
 use crate::{Bounds, Bvh, Hit, HitFilter, Lanes, Precision, Ray};
 
 /// An object placed in the world.
@@ -126,6 +127,7 @@ impl<const N: usize, const P: usize> InstancedBvh<N, P> {
         }
         let boxes: Vec<Bounds> = placed.iter().map(|placed| placed.bounds).collect();
         let (nodes, order) = build_top_level(&boxes);
+        check_nodes(&nodes, placed.len()).expect("the builder keeps the kernels' contract");
         Ok(InstancedBvh {
             objects,
             nodes,
@@ -216,7 +218,7 @@ where
         best: InstanceHit::miss(tmax),
     };
     let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
-    // SAFETY: the builder makes sound nodes, and the root is there.
+    // SAFETY: the nodes were checked, and the root is there.
     unsafe { traverse(simd, &bvh.nodes, Child::ROOT, &slab, &mut search) };
     if search.best.is_hit() {
         search.best
