@@ -3,10 +3,7 @@
 
 use std::time::Instant;
 
-use fearless_simd::{Level, dispatch};
-use residual_bvh::{
-    AllHits, BuildQuality, Bvh, BvhView, Hit, Lanes, Ray, Watertight, any_hit, build, closest_hit,
-};
+use residual_bvh::{BuildQuality, Bvh, HasKernels, Hit, Ray, build};
 
 fn main() {
     let (positions, triangles) = bumpy_sphere(300, 600);
@@ -14,7 +11,7 @@ fn main() {
     measure::<4>(&positions, &triangles);
     measure::<8>(&positions, &triangles);
     let bvh = measure::<16>(&positions, &triangles);
-    let hits = trace(bvh.view(), &camera_rays(64, 32));
+    let hits = trace(&bvh, &camera_rays(64, 32));
     for row in hits.chunks(64) {
         let shade = |hit: &Hit| {
             if hit.is_hit() {
@@ -32,7 +29,7 @@ fn main() {
 
 fn measure<const N: usize>(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Bvh<N>
 where
-    Token: Traces<N>,
+    Bvh<N>: HasKernels<N, N>,
 {
     let start = Instant::now();
     let bvh = build::<N, N>(positions, triangles, None, BuildQuality::Best);
@@ -43,19 +40,16 @@ where
         bvh.sah_cost()
     );
     let camera = camera_rays(1024, 1024);
-    let bounced = bounced_rays(&camera, &Token::trace(bvh.view(), &camera));
+    let bounced = bounced_rays(&camera, &trace(&bvh, &camera));
     for (name, rays) in [("coherent", &camera), ("random", &bounced)] {
         let mut best = [f64::INFINITY; 2];
         let mut found = [0; 2];
         for _ in 0..5 {
             let start = Instant::now();
-            found[0] = Token::trace(bvh.view(), rays)
-                .iter()
-                .filter(|hit| hit.is_hit())
-                .count();
+            found[0] = trace(&bvh, rays).iter().filter(|hit| hit.is_hit()).count();
             best[0] = best[0].min(start.elapsed().as_secs_f64());
             let start = Instant::now();
-            found[1] = Token::occluded(bvh.view(), rays);
+            found[1] = count_occluded(&bvh, rays);
             best[1] = best[1].min(start.elapsed().as_secs_f64());
         }
         assert_eq!(found[0], found[1]);
@@ -69,55 +63,22 @@ where
     bvh
 }
 
-/// Run-time dispatch for each width.
-struct Token;
-
-trait Traces<const N: usize> {
-    fn trace(bvh: BvhView<'_, N>, rays: &[Ray]) -> Vec<Hit>;
-    fn occluded(bvh: BvhView<'_, N>, rays: &[Ray]) -> usize;
-}
-
-macro_rules! implement_traces {
-    ($($n:literal)*) => {$(
-        impl Traces<$n> for Token {
-            fn trace(bvh: BvhView<'_, $n>, rays: &[Ray]) -> Vec<Hit> {
-                dispatch!(Level::new(), simd => closest_hits(simd, bvh, rays))
-            }
-            fn occluded(bvh: BvhView<'_, $n>, rays: &[Ray]) -> usize {
-                dispatch!(Level::new(), simd => count_occluded(simd, bvh, rays))
-            }
-        }
-    )*};
-}
-implement_traces!(4 8 16);
-
-fn trace<const N: usize>(bvh: BvhView<'_, N>, rays: &[Ray]) -> Vec<Hit>
+fn trace<const N: usize>(bvh: &Bvh<N>, rays: &[Ray]) -> Vec<Hit>
 where
-    Token: Traces<N>,
+    Bvh<N>: HasKernels<N, N>,
 {
-    Token::trace(bvh, rays)
+    let mut hits = vec![Hit::miss(0.0); rays.len()];
+    bvh.closest_hits(rays, &mut hits);
+    hits
 }
 
-#[inline(always)]
-fn closest_hits<S: Lanes<N>, const N: usize>(
-    simd: S,
-    bvh: BvhView<'_, N>,
-    rays: &[Ray],
-) -> Vec<Hit> {
-    rays.iter()
-        .map(|ray| closest_hit(simd, Watertight, bvh, ray, &AllHits))
-        .collect()
-}
-
-#[inline(always)]
-fn count_occluded<S: Lanes<N>, const N: usize>(
-    simd: S,
-    bvh: BvhView<'_, N>,
-    rays: &[Ray],
-) -> usize {
-    rays.iter()
-        .filter(|ray| any_hit(simd, Watertight, bvh, ray, &AllHits))
-        .count()
+fn count_occluded<const N: usize>(bvh: &Bvh<N>, rays: &[Ray]) -> usize
+where
+    Bvh<N>: HasKernels<N, N>,
+{
+    let mut occluded = vec![false; rays.len()];
+    bvh.any_hits(rays, &mut occluded);
+    occluded.iter().filter(|&&is| is).count()
 }
 
 fn camera_rays(width: usize, height: usize) -> Vec<Ray> {

@@ -119,7 +119,7 @@ pub fn build_with_progress<const N: usize, const P: usize>(
 
 /// Whether the vertices are finite and not collinear. In `f64` the products of any two `f32`
 /// differences neither overflow nor vanish.
-fn has_area(vertices: &[[f32; 3]; 3]) -> bool {
+pub(crate) fn has_area(vertices: &[[f32; 3]; 3]) -> bool {
     let [a, b, c] = vertices.map(|vertex| vertex.map(f64::from));
     let edge = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
     let (e, f) = (edge(b), edge(c));

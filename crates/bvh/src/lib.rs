@@ -1,8 +1,125 @@
 //! Ray queries: wide bounding volume hierarchies over triangles, traversed with portable SIMD.
 //!
-//! [`build`] makes a [`Bvh`] whose nodes have `N` children and whose leaves hold packets of `N`
-//! triangles (`N` = 4, 8 or 16); [`closest_hit`] and [`any_hit`] trace one ray through it, `N`
-//! boxes or `N` triangles per instruction.
+//! [`build`] makes a [`Bvh`] whose nodes have `N` children and whose leaves hold packets of `P`
+//! triangles; a ray is tested against `N` boxes or `P` triangles per instruction.
+//!
+//! ```
+//! use residual_bvh::{BuildQuality, Bvh, Ray, build};
+//!
+//! // A square in the plane z = 0, of two triangles that share an edge.
+//! let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+//! let triangles = [[0, 1, 2], [0, 2, 3]];
+//! let bvh: Bvh<8> = build(&positions, &triangles, None, BuildQuality::Best);
+//!
+//! let down = |x, y| Ray { org: [x, y, 2.0], tmin: 0.0, dir: [0.0, 0.0, -1.0], tmax: f32::INFINITY };
+//! let hit = bvh.closest_hit(&down(0.25, 0.75));
+//! assert_eq!((hit.prim, hit.t), (1, 2.0));
+//! assert!(bvh.any_hit(&down(0.5, 0.5)) && !bvh.any_hit(&down(2.0, 0.5)));
+//!
+//! // Many rays at once.
+//! let rays: Vec<Ray> = (0..100).map(|i| down(i as f32 / 50.0, 0.5)).collect();
+//! let mut occluded = vec![false; rays.len()];
+//! bvh.any_hits(&rays, &mut occluded);
+//! assert_eq!(occluded.iter().filter(|&&is| is).count(), 51);
+//! ```
+//!
+//! # Filters
+//! A [`HitFilter`] says which intersections count.
+//!
+//! ```
+//! # use residual_bvh::{BuildQuality, Bvh, build};
+//! use residual_bvh::{Culling, Hit, HitFilter, Ray};
+//!
+//! /// Everything but the triangle that the ray comes from.
+//! struct Others {
+//!     from: u32,
+//! }
+//!
+//! impl HitFilter for Others {
+//!     const CULLING: Culling = Culling::None;
+//!     const REJECTS: bool = true;
+//!
+//!     fn accept(&self, _ray: &Ray, hit: &Hit) -> bool {
+//!         hit.prim != self.from
+//!     }
+//! }
+//!
+//! # let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+//! # let bvh: Bvh<4> = build(&positions, &[[0, 1, 2]], None, BuildQuality::Fast);
+//! let ray = Ray { org: [0.2, 0.2, 1.0], tmin: 0.0, dir: [0.0, 0.0, -1.0], tmax: 10.0 };
+//! assert!(bvh.closest_hit(&ray).is_hit());
+//! assert!(!bvh.closest_hit_filtered(&ray, &Others { from: 0 }).is_hit());
+//! ```
+//!
+//! # Instances
+//! An [`InstancedBvh`] places objects in the world, each any number of times. Distances are the
+//! same in the world and in the object.
+//!
+//! ```
+//! # use residual_bvh::{BuildQuality, Bvh, Ray, build};
+//! use glam::{Affine3A, Vec3};
+//! use residual_bvh::{Instance, InstancedBvh};
+//!
+//! # let positions = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+//! # let bvh: Bvh<8> = build(&positions, &[[0, 1, 2]], None, BuildQuality::Fast);
+//! let instances: Vec<Instance> = (0..10)
+//!     .map(|i| Instance {
+//!         bvh: 0,
+//!         object_to_world: Affine3A::from_translation(Vec3::new(0.0, 0.0, -5.0 * i as f32)),
+//!     })
+//!     .collect();
+//! let scene = InstancedBvh::new(vec![bvh], &instances)?;
+//! let ray = Ray { org: [0.0, 0.0, -7.0], tmin: 0.0, dir: [0.0, 0.0, -1.0], tmax: f32::INFINITY };
+//! let hit = scene.closest_hit(&ray);
+//! assert_eq!((hit.instance, hit.hit.prim, hit.hit.t), (2, 0, 3.0));
+//! # Ok::<(), residual_bvh::InvalidInstance>(())
+//! ```
+//!
+//! # Files, and vertices that move
+//! [`Bvh::write_to`] and [`Bvh::read_from`] take any writer and reader; bytes of any origin are safe
+//! to load and trace. [`Bvh::refit`] keeps the tree and moves its triangles.
+//!
+//! ```
+//! # use residual_bvh::{BuildQuality, Bvh, build};
+//! # let mut positions = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+//! # let triangles = [[0, 1, 2]];
+//! # let bvh: Bvh<8> = build(&positions, &triangles, None, BuildQuality::Fast);
+//! let mut file = Vec::new();
+//! bvh.write_to(&mut file)?;
+//! let mut again: Bvh<8> = Bvh::read_from(&mut &file[..])?;
+//!
+//! positions[0][2] = 3.0;
+//! again.refit(&positions, &triangles);
+//! assert!(again.bounds().hi[2] >= 3.0);
+//! # Ok::<(), residual_bvh::LoadError>(())
+//! ```
+//!
+//! # Layout
+//! Everything is aligned to cache lines of 64 bytes. One line of `Node<2>` holds both children.
+//!
+//! | `N` | bytes of a [`Node`] | `P` | bytes of a [`TrianglePacket`] |
+//! |----:|--------------------:|----:|------------------------------:|
+//! |   2 |                  64 |   1 |                            64 |
+//! |   4 |                 128 |   4 |                           192 |
+//! |   8 |                 256 |   8 |                           320 |
+//! |  16 |                 448 |  16 |                           640 |
+//!
+//! # Kernels
+//! The methods of [`Bvh`] look for the machine's instruction set at every call. Code that is
+//! compiled for an instruction set itself, with fearless_simd, calls [`closest_hit`], [`any_hit`]
+//! and the stream [`Kernel`]s, and chooses the [`Precision`].
+//!
+//! ```
+//! # use residual_bvh::{BuildQuality, Bvh, Ray, build};
+//! use fearless_simd::{Level, dispatch};
+//! use residual_bvh::{AllHits, Fast, closest_hit};
+//!
+//! # let positions = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+//! # let bvh: Bvh<8> = build(&positions, &[[0, 1, 2]], None, BuildQuality::Fast);
+//! # let ray = Ray { org: [0.0, 0.0, 1.0], tmin: 0.0, dir: [0.0, 0.0, -1.0], tmax: 10.0 };
+//! let hit = dispatch!(Level::new(), simd => closest_hit(simd, Fast, bvh.view(), &ray, &AllHits));
+//! assert_eq!(hit.t, 1.0);
+//! ```
 //!
 //! ```text
 //! positions, triangles ─ build ─ sbvh (binary tree, references) ─ reinsert ─ collapse ─ Bvh<N>
@@ -28,22 +145,28 @@ mod bvh;
 mod clip;
 mod collapse;
 mod columns;
+mod dispatch;
 mod filter;
 mod fragment;
+mod instances;
 mod packet;
 mod partition;
+mod placed;
 mod ploc;
 mod precision;
 mod presplit;
 mod ray;
+mod refit;
 mod reinsert;
 mod sbvh;
+mod serial;
 mod simd;
 mod single;
 mod slab;
 mod spatial;
 mod stack;
 mod stream;
+mod top_level;
 mod traverse;
 mod triangle;
 mod validate;
@@ -51,9 +174,15 @@ mod validate;
 pub use bounds::Bounds;
 pub use build::{BuildQuality, build, build_with_progress};
 pub use bvh::{Bvh, BvhView, Node, TrianglePacket};
+pub use dispatch::HasKernels;
 pub use filter::{AllHits, Culling, FrontHits, HitFilter, MarkedHits};
+pub use instances::{
+    Instance, InstanceFault, InstanceHit, InstancedBvh, InvalidInstance, any_instance_hit,
+    closest_instance_hit,
+};
 pub use precision::{Fast, Precision, Watertight};
 pub use ray::{Hit, Ray};
+pub use serial::LoadError;
 pub use simd::Lanes;
 pub use single::{any_hit, closest_hit};
 pub use stream::{Hybrid, Kernel, Packets, Single};

@@ -65,10 +65,18 @@ impl fmt::Display for InvalidBvh {
 
 impl std::error::Error for InvalidBvh {}
 
-/// One pass suffices because parents precede their children.
 pub(crate) fn check_structure<const N: usize, const P: usize>(
     nodes: &[Node<N>],
     packets: &[TrianglePacket<P>],
+) -> Result<(), InvalidBvh> {
+    check_nodes(nodes, packets.len())
+}
+
+/// For leaves that name some of `packet_count` packets, or of other things. One pass suffices
+/// because parents precede their children.
+pub(crate) fn check_nodes<const N: usize>(
+    nodes: &[Node<N>],
+    packet_count: usize,
 ) -> Result<(), InvalidBvh> {
     if nodes.is_empty() {
         return Err(InvalidBvh::NoNodes);
@@ -80,7 +88,7 @@ pub(crate) fn check_structure<const N: usize, const P: usize>(
         for slot in 0..N {
             let child = Child(node.children[slot]);
             if child.is_leaf() {
-                if child.first_packet() + child.packet_count() > packets.len() {
+                if child.first_packet() + child.packet_count() > packet_count {
                     return Err(InvalidBvh::BadLeaf { node: index, slot });
                 }
                 continue;

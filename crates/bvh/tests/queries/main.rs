@@ -2,9 +2,13 @@
 //! catalogue of hard numerical cases.
 
 mod agreement;
+mod dispatched;
+mod instances;
 mod mesh;
 mod oracle;
+mod refit;
 mod robustness;
 mod runner;
+mod serial;
 mod structure;
 mod watertight;
