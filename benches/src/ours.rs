@@ -119,6 +119,7 @@ pub fn variants() -> Vec<Variant> {
     variants![
         Single(Single, 1): 4 x 4, Fast;
         Single(Single, 1): 8 x 8, Fast;
+        Single(Single, 1): 16 x 8, Fast;
         Single(Single, 1): 16 x 16, Fast;
         Single(Single, 1): 4 x 4, Watertight;
         Single(Single, 1): 8 x 8, Watertight;

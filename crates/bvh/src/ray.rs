@@ -26,14 +26,20 @@ impl Ray {
     /// finite, and an interval that is not empty.
     #[inline(always)]
     pub fn is_valid(&self) -> bool {
-        let [x, y, z] = self.dir.map(f32::abs);
-        let longest = x.max(y).max(z);
-        let finite = |[x, y, z]: [f32; 3]| x.is_finite() & y.is_finite() & z.is_finite();
+        // Zero times a finite number is zero, and NaN otherwise.
+        let [x, y, z] = self.org.map(|x| x * 0.0);
+        let [u, v, w] = self.dir.map(|x| x * 0.0);
+        let finite = (x + y + z) + (u + v + w) == 0.0;
         // Below the smallest normal number 1/dir overflows: such a direction is as good as zero.
-        finite(self.org)
-            & finite(self.dir)
-            & (longest >= f32::MIN_POSITIVE)
-            & (self.tmin <= self.tmax)
+        finite & (self.longest() >= f32::MIN_POSITIVE) & (self.tmin <= self.tmax)
+    }
+
+    /// The greatest component of the direction.
+    #[inline(always)]
+    pub(crate) fn longest(&self) -> f32 {
+        let [x, y, z] = self.dir.map(f32::abs);
+        let greater = |a: f32, b: f32| if a > b { a } else { b };
+        greater(greater(x, y), z)
     }
 
     /// The interval that the kernels search.

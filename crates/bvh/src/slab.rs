@@ -32,54 +32,68 @@ pub(crate) fn octant(ray: &Ray) -> Octant {
     ray.dir.map(|x| x < 0.0)
 }
 
-/// `scale` and `shift` of the entry and the exit planes' distances, `[axis]`.
+/// `scale` and `shift` of the entry and the exit planes' distances, `[axis]` and one more.
 #[derive(Clone, Copy)]
 struct Constants {
-    near_scale: [f32; 3],
-    near_shift: [f32; 3],
-    far_scale: [f32; 3],
-    far_shift: [f32; 3],
+    near_scale: [f32; 4],
+    near_shift: [f32; 4],
+    far_scale: [f32; 4],
+    far_shift: [f32; 4],
 }
 
 impl Constants {
     /// For rays from `near_org`, as slow as `near_inv`, into the boxes and from `far_org`, as
-    /// fast as `far_inv`, out of them.
+    /// fast as `far_inv`, out of them. The axes are lanes.
     #[inline(always)]
-    fn new(near_org: [f32; 3], near_inv: [f32; 3], far_org: [f32; 3], far_inv: [f32; 3]) -> Self {
-        let scaled = |inv: [f32; 3], by: f32| [inv[0] * by, inv[1] * by, inv[2] * by];
-        let near_scale = scaled(near_inv, 1.0 - STRETCH);
-        let far_scale = scaled(far_inv, 1.0 + STRETCH);
-        let near = |axis: usize| {
-            let shift = near_org[axis] * near_scale[axis];
-            -shift - shift.abs() * REACH
-        };
-        let far = |axis: usize| {
-            let shift = far_org[axis] * far_scale[axis];
-            -shift + shift.abs() * REACH
+    fn new<S: Lanes<4>>(
+        simd: S,
+        near_org: [f32; 4],
+        near_inv: S::Float,
+        far_org: [f32; 4],
+        far_inv: S::Float,
+    ) -> Self {
+        let near_scale = simd.mul(near_inv, simd.splat(1.0 - STRETCH));
+        let far_scale = simd.mul(far_inv, simd.splat(1.0 + STRETCH));
+        let near_shift = shift(simd, simd.load(&near_org), near_scale, -REACH);
+        let far_shift = shift(simd, simd.load(&far_org), far_scale, REACH);
+        let array = |lanes: S::Float| {
+            let mut array = [0.0; 4];
+            simd.store(lanes, &mut array);
+            array
         };
         Constants {
-            near_scale,
-            near_shift: [near(0), near(1), near(2)],
-            far_scale,
-            far_shift: [far(0), far(1), far(2)],
+            near_scale: array(near_scale),
+            near_shift: array(near_shift),
+            far_scale: array(far_scale),
+            far_shift: array(far_shift),
         }
     }
 }
 
-/// The inverse direction.
+/// `-org * scale`, moved by `reach` of itself.
 #[inline(always)]
-fn inverse(ray: &Ray) -> [f32; 3] {
-    let [x, y, z] = ray.dir.map(f32::abs);
-    let least = x.max(y).max(z) * LEAST;
-    let inverse = |x: f32| {
-        let size = x.abs().max(least);
-        1.0 / if x < 0.0 { -size } else { size }
-    };
-    [
-        inverse(ray.dir[0]),
-        inverse(ray.dir[1]),
-        inverse(ray.dir[2]),
-    ]
+fn shift<S: Lanes<W>, const W: usize>(
+    simd: S,
+    org: S::Float,
+    scale: S::Float,
+    reach: f32,
+) -> S::Float {
+    let shift = simd.mul(org, scale);
+    simd.sub(simd.mul(simd.abs(shift), simd.splat(reach)), shift)
+}
+
+/// One ray's constants, and its octant.
+#[inline(always)]
+fn constants_of_ray<S: Lanes<4>>(simd: S, ray: &Ray) -> (Constants, Octant) {
+    let padded = |[x, y, z]: [f32; 3]| [x, y, z, z];
+    let dir = simd.load(&padded(ray.dir));
+    let negative = simd.bits(simd.lt(dir, simd.splat(0.0)));
+    let one = simd.select(negative, simd.splat(-1.0), simd.splat(1.0));
+    let least = simd.splat(ray.longest() * LEAST);
+    let inv = simd.div(one, simd.max_number(simd.abs(dir), least));
+    let org = padded(ray.org);
+    let octant = [0, 1, 2].map(|axis| negative >> axis & 1 == 1);
+    (Constants::new(simd, org, inv, org, inv), octant)
 }
 
 /// Rays of one octant, prepared for slab tests. Distances are in units of their directions.
@@ -98,10 +112,12 @@ impl<S: Lanes<N>, const N: usize> Slab<S, N> {
     /// One ray, in every lane. `tmin` must not be negative: the slack would then point the wrong
     /// way.
     #[inline(always)]
-    pub(crate) fn of_ray(simd: S, ray: &Ray, tmin: f32) -> Slab<S, N> {
-        let inv = inverse(ray);
-        let constants = Constants::new(ray.org, inv, ray.org, inv);
-        Slab::splat(simd, &constants, octant(ray), tmin)
+    pub(crate) fn of_ray(simd: S, ray: &Ray, tmin: f32) -> Slab<S, N>
+    where
+        S: Lanes<4>,
+    {
+        let (constants, octant) = constants_of_ray(simd, ray);
+        Slab::splat(simd, &constants, octant, tmin)
     }
 
     /// A ray a lane, all of one octant, and valid.
@@ -112,11 +128,7 @@ impl<S: Lanes<N>, const N: usize> Slab<S, N> {
         let scale = |by: f32| axes.map(|axis| simd.mul(inv[axis], simd.splat(by)));
         let (near_scale, far_scale) = (scale(1.0 - STRETCH), scale(1.0 + STRETCH));
         let shift = |scale: [S::Float; 3], reach: f32| {
-            axes.map(|axis| {
-                let shift = simd.mul(simd.load(&rays.org[axis]), scale[axis]);
-                let slack = simd.mul(simd.abs(shift), simd.splat(reach));
-                simd.sub(slack, shift)
-            })
+            axes.map(|axis| shift(simd, simd.load(&rays.org[axis]), scale[axis], reach))
         };
         Slab {
             near_scale,
@@ -137,11 +149,11 @@ impl<S: Lanes<N>, const N: usize> Slab<S, N> {
         octant: Octant,
     ) -> Slab<S, N>
     where
-        S: Lanes<R>,
+        S: Lanes<R> + Lanes<4>,
     {
         let inv = rays.inverse(simd, octant);
-        let (mut near_org, mut far_org) = ([0.0; 3], [0.0; 3]);
-        let (mut near_inv, mut far_inv) = ([0.0; 3], [0.0; 3]);
+        let (mut near_org, mut far_org) = ([0.0; 4], [0.0; 4]);
+        let (mut near_inv, mut far_inv) = ([0.0; 4], [0.0; 4]);
         for axis in 0..3 {
             let mut inverse = [0.0; R];
             simd.store(inv[axis], &mut inverse);
@@ -155,13 +167,14 @@ impl<S: Lanes<N>, const N: usize> Slab<S, N> {
                 (hi_org, lo_org, lo_inv, hi_inv)
             };
         }
-        let constants = Constants::new(near_org, near_inv, far_org, far_inv);
+        let [near_inv, far_inv] = [near_inv, far_inv].map(|inv| <S as Lanes<4>>::load(simd, &inv));
+        let constants = Constants::new(simd, near_org, near_inv, far_org, far_inv);
         Slab::splat(simd, &constants, octant, least(rays.tmin))
     }
 
     #[inline(always)]
     fn splat(simd: S, constants: &Constants, octant: Octant, tmin: f32) -> Slab<S, N> {
-        let splat = |x: [f32; 3]| [simd.splat(x[0]), simd.splat(x[1]), simd.splat(x[2])];
+        let splat = |x: [f32; 4]| [simd.splat(x[0]), simd.splat(x[1]), simd.splat(x[2])];
         Slab {
             near_scale: splat(constants.near_scale),
             near_shift: splat(constants.near_shift),

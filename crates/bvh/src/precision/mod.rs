@@ -42,7 +42,7 @@ struct Inside {
 }
 
 /// Inside a triangle the three weights have the same sign, or are zero; in front it is positive.
-/// NaN, from coordinates whose products overflow, is outside.
+/// Of NaN, from coordinates whose products overflow, nothing is said.
 #[inline(always)]
 fn sides<S: Lanes<W>, const W: usize>(
     simd: S,
@@ -50,11 +50,14 @@ fn sides<S: Lanes<W>, const W: usize>(
     culling: Culling,
 ) -> Inside {
     let zero = simd.splat(0.0);
-    let all = |[w, u, v]: [S::Mask; 3]| simd.bits(simd.and(simd.and(w, u), v));
-    let front = all([w, u, v].map(|weight| simd.le(zero, weight)));
+    let least = simd.min_number(simd.min_number(w, u), v);
+    let front = simd.bits(simd.le(zero, least));
     let back = match culling {
         Culling::Back => 0,
-        Culling::None | Culling::PerTriangle => all([w, u, v].map(|weight| simd.le(weight, zero))),
+        Culling::None | Culling::PerTriangle => {
+            let greatest = simd.max_number(simd.max_number(w, u), v);
+            simd.bits(simd.le(greatest, zero))
+        }
     };
     Inside {
         lanes: front | back,

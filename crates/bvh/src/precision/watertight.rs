@@ -47,13 +47,15 @@ impl Test for Watertight {
             |p: [S::Float; 3], q: [S::Float; 3]| (simd.mul(p[0], q[1]), simd.mul(p[1], q[0]));
         let edges = [products(c, b), products(a, c), products(b, a)];
         let [w, u, v] = edges.map(|(p, q)| simd.sub(p, q));
-        let inside = sides(simd, [w, u, v], culling);
+        let mut inside = sides(simd, [w, u, v], culling);
         if inside.lanes == 0 {
             return None;
         }
 
         // Everything from here on is for likely hits.
         let determinant = simd.add(simd.add(w, u), v);
+        // Not NaN.
+        inside.lanes &= simd.bits(simd.le(determinant, determinant));
         let inv = simd.div(simd.splat(1.0), determinant);
         let [w, u, v] = [w, u, v].map(|weight| simd.mul(weight, inv));
         let depth = simd.add(
