@@ -50,7 +50,7 @@ pub use bounds::Bounds;
 pub use build::{BuildQuality, build, build_with_progress};
 pub use bvh::{Bvh, BvhView, Node, TrianglePacket};
 pub use filter::{AllHits, Culling, FrontHits, HitFilter, MarkedHits};
-pub use precision::{Fast, Precision, Watertight};
+pub use precision::{Exact, Fast, Precision, Watertight};
 pub use ray::{Hit, Ray};
 pub use simd::Lanes;
 pub use single::{any_hit, closest_hit};
