@@ -196,7 +196,8 @@ fn meet(ray: &Ray, corners: &[[f32; 3]; 3], culling: Culling) -> Option<Meeting>
     // The box moves only what under- or overflows: the nodes' boxes are entered no later and left
     // no earlier than the padded box, which contains the triangle.
     let (entry, exit) = Bounds::of_padded_triangle(corners).passage(ray);
-    let [t, u, v] = [volume, weights[1], weights[2]].map(|x| (x / determinant) as f32);
+    // Zero has no sign.
+    let [t, u, v] = [volume, weights[1], weights[2]].map(|x| (x / determinant) as f32 + 0.0);
     (entry <= exit).then(|| Meeting {
         t: t.max(entry).min(exit),
         u,

@@ -2,6 +2,8 @@
 //! catalogue of hard numerical cases.
 
 mod agreement;
+mod integers;
+mod kernels;
 mod mesh;
 mod oracle;
 mod robustness;

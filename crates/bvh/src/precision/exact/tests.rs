@@ -3,11 +3,15 @@
 use fearless_simd::{Level, dispatch};
 use num_bigint::{BigInt, Sign};
 
+use self::integers::{integer, quotient, triple_product};
 use super::Exact;
 use crate::bvh::TrianglePacket;
 use crate::precision::sealed::Test;
 use crate::triangle::Shear;
 use crate::{Culling, Lanes, Ray, Watertight};
+
+#[path = "../../../tests/queries/integers.rs"]
+mod integers;
 
 type Triangle = [[f32; 3]; 3];
 
@@ -58,32 +62,6 @@ fn towards(org: [f32; 3], target: [f32; 3]) -> Ray {
     }
 }
 
-/// The number times 2¹⁴⁹.
-fn integer(x: f32) -> BigInt {
-    let (exponent, mantissa) = (x.to_bits() >> 23 & 255, x.to_bits() & 0x7f_ffff);
-    let size = if exponent == 0 {
-        BigInt::from(mantissa)
-    } else {
-        BigInt::from(mantissa | 1 << 23) << (exponent - 1)
-    };
-    if x < 0.0 { -size } else { size }
-}
-
-fn quotient(p: &BigInt, q: &BigInt) -> f64 {
-    if p.sign() == Sign::NoSign {
-        return 0.0;
-    }
-    // So that the integer quotient has 100 bits or so.
-    let shift = 100 + q.bits() as i32 - p.bits() as i32;
-    let whole = if shift >= 0 {
-        (p << shift) / q
-    } else {
-        p / (q << -shift)
-    };
-    let whole = i128::try_from(whole).expect("about 100 bits") as f64;
-    whole * 2f64.powi(-shift)
-}
-
 /// `[t, u, v]` where the line meets the closed triangle, and whether from behind.
 fn truth(ray: &Ray, triangle: &Triangle) -> Option<([f64; 3], bool)> {
     let org = ray.org.map(integer);
@@ -92,14 +70,10 @@ fn truth(ray: &Ray, triangle: &Triangle) -> Option<([f64; 3], bool)> {
         let corner = corner.map(integer);
         [0, 1, 2].map(|axis| &corner[axis] - &org[axis])
     });
-    let triple = |p: &[BigInt; 3], q: &[BigInt; 3], r: &[BigInt; 3]| {
-        let minor = |i: usize, j: usize| &q[i] * &r[j] - &q[j] * &r[i];
-        &p[0] * minor(1, 2) + &p[1] * minor(2, 0) + &p[2] * minor(0, 1)
-    };
     let weights = [
-        triple(&dir, &c, &b),
-        triple(&dir, &a, &c),
-        triple(&dir, &b, &a),
+        triple_product(&dir, &c, &b),
+        triple_product(&dir, &a, &c),
+        triple_product(&dir, &b, &a),
     ];
     let all = |sign: Sign| weights.iter().all(|weight| weight.sign() != sign);
     let determinant: BigInt = weights.iter().sum();
@@ -107,7 +81,7 @@ fn truth(ray: &Ray, triangle: &Triangle) -> Option<([f64; 3], bool)> {
     if !(front || back) || determinant.sign() == Sign::NoSign {
         return None;
     }
-    let volume = triple(&a, &c, &b);
+    let volume = triple_product(&a, &c, &b);
     let hit = [&volume, &weights[1], &weights[2]].map(|x| quotient(x, &determinant));
     Some((hit, back))
 }
@@ -121,8 +95,8 @@ fn hits<P: Test>(
     let mut packet = TrianglePacket::<16>::VACANT;
     for (lane, triangle) in triangles.iter().enumerate() {
         for (vertex, corner) in triangle.iter().enumerate() {
-            for axis in 0..3 {
-                packet.vertices[vertex][axis][lane] = corner[axis];
+            for (axis, &x) in corner.iter().enumerate() {
+                packet.vertices[vertex][axis][lane] = x;
             }
         }
     }
