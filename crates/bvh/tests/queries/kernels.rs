@@ -16,7 +16,9 @@ use crate::oracle::{closest_hit_of_all, exact_closest_hit_of_all};
 use crate::runner::{Random, aimed, same};
 
 /// Rays that are traced as one stream: not a whole number of windows or packets.
-const BATCH: usize = 1000;
+const BATCH: usize = if cfg!(miri) { 6 } else { 1000 };
+/// Of the mesh.
+const LEVELS: usize = if cfg!(miri) { 0 } else { 2 };
 
 /// A closed mesh around `center`, in hierarchies of all widths, and each triangle alone.
 struct Scene {
@@ -205,7 +207,7 @@ fn compare<S, Pr: Judged, const N: usize, const P: usize>(
 
 impl Scene {
     fn new(center: f32, quality: BuildQuality, seed: u64) -> Scene {
-        let mesh = jittered_icosphere(2, &mut Random::new(seed)).translated(center);
+        let mesh = jittered_icosphere(LEVELS, &mut Random::new(seed)).translated(center);
         let alone = |triangle| build(&mesh.positions, &[triangle], None, BuildQuality::Fast);
         Scene {
             center,
@@ -392,12 +394,21 @@ fn check(tally: &Tally) {
     }
     for kernel in 0..3 {
         assert_eq!(fast.disagreements[kernel][0], 0);
+        // None in five million answers was measured.
+        assert!(fast.disagreements[kernel][1] * 100_000 <= fast.answers[kernel][1]);
     }
 }
 
 #[test]
 fn every_kernel_agrees_with_brute_force() {
-    check(&trials(if cfg!(debug_assertions) { 5 } else { 30 }));
+    let batches = if cfg!(miri) {
+        1
+    } else if cfg!(debug_assertions) {
+        5
+    } else {
+        30
+    };
+    check(&trials(batches));
 }
 
 /// As many rays as the variable RAYS says, ten million if it is not set:
