@@ -180,7 +180,7 @@ pub use instances::{
     Instance, InstanceFault, InstanceHit, InstancedBvh, InvalidInstance, any_instance_hit,
     closest_instance_hit,
 };
-pub use precision::{Fast, Precision, Watertight};
+pub use precision::{Exact, Fast, Precision, Watertight};
 pub use ray::{Hit, Ray};
 pub use serial::LoadError;
 pub use simd::Lanes;

@@ -1,11 +1,14 @@
 //! How exactly a ray meets a triangle, as a type.
 
+mod exact;
+mod expansion;
 mod fast;
 mod watertight;
 
 use crate::triangle::{LaneHits, Shear, Triangles};
 use crate::{Culling, Lanes};
 
+pub use exact::Exact;
 pub use fast::Fast;
 pub use watertight::Watertight;
 

@@ -4,6 +4,8 @@
 mod agreement;
 mod dispatched;
 mod instances;
+mod integers;
+mod kernels;
 mod mesh;
 mod oracle;
 mod refit;

@@ -1,11 +1,27 @@
-//! The naive oracle: every triangle in turn, one scalar at a time, with the kernel's arithmetic.
+//! The naive oracles: every triangle in turn, one scalar at a time, with the arithmetic of
+//! [`Watertight`](residual_bvh::Watertight) or [`Exact`](residual_bvh::Exact).
 
 use residual_bvh::{Culling, Hit, HitFilter, Ray};
 
+use crate::integers::{integer, quotient, triple_product as exact_triple_product};
 use crate::mesh::Mesh;
 
 /// The answer that a hierarchy must reproduce bit for bit.
 pub(crate) fn closest_hit_of_all<F: HitFilter>(mesh: &Mesh, ray: &Ray, filter: &F) -> Hit {
+    closest_of_all(mesh, ray, filter, intersect)
+}
+
+/// The same for `Exact`.
+pub(crate) fn exact_closest_hit_of_all<F: HitFilter>(mesh: &Mesh, ray: &Ray, filter: &F) -> Hit {
+    closest_of_all(mesh, ray, filter, intersect_exactly)
+}
+
+fn closest_of_all<F: HitFilter>(
+    mesh: &Mesh,
+    ray: &Ray,
+    filter: &F,
+    intersect: impl Fn(&Ray, &[[f32; 3]; 3], bool) -> Option<[f32; 3]>,
+) -> Hit {
     let mut best = Hit::miss(ray.tmax);
     if !is_valid(ray) {
         return best;
@@ -118,6 +134,15 @@ fn ill_conditioned(ray: &Ray, vertices: &[[f32; 3]; 3]) -> Option<[f32; 3]> {
     let depth = (w * dot(a, d) + u * dot(b, d) + v * dot(c, d)) / dot(d, d);
     let [t, u, v] = [depth / sum, u / sum, v / sum].map(|x| x as f32);
 
+    let (entry, exit) = passage(ray, vertices);
+    let finite = t.is_finite();
+    let t = if t > entry { t } else { entry };
+    let t = if t < exit { t } else { exit };
+    (entry <= exit && finite).then_some([t, u, v])
+}
+
+/// Where the ray passes through the padded box.
+fn passage(ray: &Ray, vertices: &[[f32; 3]; 3]) -> (f32, f32) {
     let axis_range = |axis: usize| {
         let [p, q, r] = [0, 1, 2].map(|i| vertices[i][axis]);
         (p.min(q).min(r), p.max(q).max(r))
@@ -140,8 +165,73 @@ fn ill_conditioned(ray: &Ray, vertices: &[[f32; 3]; 3]) -> Option<[f32; 3]> {
         entry = entry.max((near - ray.org[axis]) * inv * (1.0 - 2f32.powi(-21)));
         exit = exit.min((far - ray.org[axis]) * inv * (1.0 + 2f32.powi(-21)));
     }
-    let finite = t.is_finite();
+    (entry, exit)
+}
+
+/// `[t, u, v]` if the ray meets the triangle in its interval: `f64` where its error bounds allow,
+/// else integers.
+fn intersect_exactly(ray: &Ray, vertices: &[[f32; 3]; 3], one_side: bool) -> Option<[f32; 3]> {
+    let minus = |p: [f32; 3], q: [f32; 3]| [0, 1, 2].map(|i| f64::from(p[i]) - f64::from(q[i]));
+    let minus_exactly = |p: [f32; 3], q: [f32; 3]| [0, 1, 2].map(|i| integer(p[i]) - integer(q[i]));
+    // `p · (q × r)`, and what it may be off by.
+    let triple_product = |p: [f64; 3], q: [f64; 3], r: [f64; 3]| {
+        let (mut value, mut size) = (0.0, 0.0);
+        for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            value += p[i] * (q[j] * r[k] - q[k] * r[j]);
+            size += p[i].abs() * ((q[j] * r[k]).abs() + (q[k] * r[j]).abs());
+        }
+        (value, 9.0 * 2f64.powi(-53) * size)
+    };
+    let longest = |p: [f64; 3]| p[0].abs().max(p[1].abs()).max(p[2].abs());
+
+    let [a, b, c] = *vertices;
+    let dir = ray.dir.map(f64::from);
+    let relative = |p| minus(p, ray.org);
+    let edges = [(c, b), (a, c), (b, a)];
+    let weights = edges.map(|(p, q)| triple_product(dir, relative(p), minus(q, p)));
+    let outside = |sign: f64| weights.iter().any(|(weight, error)| sign * weight > *error);
+    if outside(1.0) && outside(-1.0) {
+        return None;
+    }
+    let [w, u, v] = weights.map(|(weight, _)| weight);
+    let error = weights[0].1 + weights[1].1 + weights[2].1;
+    let certain = weights.iter().all(|(weight, error)| weight.abs() >= *error);
+    let [w, u, v] = if certain && error <= (w + u + v).abs() * 2f64.powi(-28) {
+        [w, u, v]
+    } else {
+        let dir = ray.dir.map(integer);
+        let unit = integer(1.0);
+        let unit = &unit * &unit * &unit;
+        edges.map(|(p, q)| {
+            let [p, q] = [p, q].map(|p| minus_exactly(p, ray.org));
+            quotient(&exact_triple_product(&dir, &p, &q), &unit)
+        })
+    };
+    let front = w >= 0.0 && u >= 0.0 && v >= 0.0;
+    let back = w <= 0.0 && u <= 0.0 && v <= 0.0;
+    let determinant = w + u + v;
+    if !(front || back && !one_side) || determinant == 0.0 {
+        return None;
+    }
+    let (volume, error) = triple_product(relative(a), minus(c, a), minus(b, a));
+    let far = longest(relative(a)) * determinant.abs() / longest(dir);
+    let volume = if error <= volume.abs().max(far * 2f64.powi(-10)) * 2f64.powi(-26) {
+        volume
+    } else {
+        let unit = integer(1.0);
+        let unit = &unit * &unit * &unit;
+        let [a, c, b] = [
+            minus_exactly(a, ray.org),
+            minus_exactly(c, a),
+            minus_exactly(b, a),
+        ];
+        quotient(&exact_triple_product(&a, &c, &b), &unit)
+    };
+    let [t, u, v] = [volume, u, v].map(|x| (x / determinant) as f32 + 0.0);
+    let (entry, exit) = passage(ray, vertices);
     let t = if t > entry { t } else { entry };
     let t = if t < exit { t } else { exit };
-    (entry <= exit && finite).then_some([t, u, v])
+    let tmin = if ray.tmin > 0.0 { ray.tmin } else { 0.0 };
+    let in_interval = tmin <= t && t <= ray.tmax && t <= f32::MAX;
+    (entry <= exit && in_interval).then_some([t, u, v])
 }

@@ -3,7 +3,7 @@
 
 use crate::mesh::{Mesh, fan, grid, jittered_icosphere};
 use crate::runner::{Random, Widths, aimed, trials};
-use residual_bvh::{AllHits, BuildQuality, Ray};
+use residual_bvh::{AllHits, BuildQuality, Exact, Fast, Precision, Ray, Watertight, closest_hit};
 
 /// Aims from points inside the mesh around `center` at edges and vertices.
 fn count_leaks(mesh: &Mesh, center: f32, quality: BuildQuality, count: usize, seed: u64) -> usize {
@@ -88,6 +88,46 @@ fn axis_parallel_rays_hit_grid_vertices() {
                     assert_eq!(widths.closest(&ray, &AllHits).t, 3.0, "{ray:?}");
                 }
             }
+        }
+    }
+}
+
+/// What each precision costs in leaks: misses of rays from inside a closed mesh, by offset.
+/// `cargo test --release -p residual-bvh -- --ignored --nocapture misses_per_million`.
+#[test]
+#[ignore = "prints a table"]
+fn misses_per_million() {
+    const RAYS: usize = 1_000_000;
+    println!("aimed at   offset        Fast  Watertight       Exact");
+    for target in ["edges", "vertices"] {
+        for (seed, offset) in [0.0, 3.7, 37.0, 1e3, 1e4].into_iter().enumerate() {
+            let mut random = Random::new(seed as u64);
+            let mesh = jittered_icosphere(2, &mut random).translated(offset);
+            let widths = Widths::new(&mesh, BuildQuality::Best);
+            let rays: Vec<Ray> = (0..RAYS)
+                .map(|_| {
+                    let org = random.in_cube(0.3).map(|x| x + offset);
+                    let target = match target {
+                        "edges" => mesh.edge_point(&mut random),
+                        _ => mesh.vertex(&mut random),
+                    };
+                    aimed(org, target)
+                })
+                .collect();
+            fn misses(widths: &Widths, precision: impl Precision, rays: &[Ray]) -> usize {
+                let bvh = widths.w8.view();
+                fearless_simd::dispatch!(fearless_simd::Level::new(), simd => rays
+                    .iter()
+                    .filter(|ray| !closest_hit(simd, precision, bvh, ray, &AllHits).is_hit())
+                    .count())
+            }
+            let [fast, watertight, exact] = [
+                misses(&widths, Fast, &rays),
+                misses(&widths, Watertight, &rays),
+                misses(&widths, Exact, &rays),
+            ];
+            println!("{target:8} {offset:8} {fast:11} {watertight:11} {exact:11}");
+            assert_eq!((watertight, exact), (0, 0));
         }
     }
 }

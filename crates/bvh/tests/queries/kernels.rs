@@ -1,0 +1,421 @@
+//! Every kernel, node width, packet width, precision and instruction set against brute force, bit
+//! for bit (I-01, I-02, I-04, I-14, B-04).
+
+use std::fmt::Debug;
+use std::ops::AddAssign;
+
+use fearless_simd::{Level, Simd};
+use rayon::prelude::*;
+use residual_bvh::{
+    AllHits, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, Lanes, Packets, Precision, Ray,
+    Single, Watertight, build, closest_hit,
+};
+
+use crate::mesh::{Mesh, jittered_icosphere};
+use crate::oracle::{closest_hit_of_all, exact_closest_hit_of_all};
+use crate::runner::{Random, aimed, same};
+
+/// Rays that are traced as one stream: not a whole number of windows or packets.
+const BATCH: usize = if cfg!(miri) { 6 } else { 1000 };
+/// Of the mesh.
+const LEVELS: usize = if cfg!(miri) { 0 } else { 2 };
+
+/// A closed mesh around `center`, in hierarchies of all widths, and each triangle alone.
+struct Scene {
+    mesh: Mesh,
+    center: f32,
+    best: best::Trees,
+    others: others::Trees,
+    alone: Vec<Bvh<4>>,
+}
+
+/// Trees of `N` children a node and `P` triangles a packet, and how each is traced: by which
+/// kernels, with packets of `R` rays, and how exactly. A table, since every entry takes a second to
+/// compile.
+macro_rules! combinations {
+    ($module:ident: $($tree:ident($n:literal, $p:literal, $r:literal) $by:ident $($precision:ident)*;)*) => {
+        mod $module {
+            use super::*;
+
+            pub(super) struct Trees {
+                $($tree: Bvh<$n, $p>,)*
+            }
+
+            impl Trees {
+                pub(super) fn new(mesh: &Mesh, quality: BuildQuality) -> Trees {
+                    let (positions, triangles) = (&mesh.positions, &mesh.triangles);
+                    Trees {
+                        $($tree: build(positions, triangles, None, quality),)*
+                    }
+                }
+
+                pub(super) fn compare<S: Simd>(&self, simd: S, batch: &Batch, tally: &mut Tally) {
+                    $($($by::<S, _, $n, $p, $r>(simd, $precision, &self.$tree, batch, tally);)*)*
+                }
+            }
+        }
+    };
+}
+
+// For the best instruction set. Without lanes `Fast` does not fuse, and gives other bits.
+combinations!(best:
+    n2p1(2, 1, 4) by_all Watertight;
+    n2p4(2, 4, 8) by_all Exact;
+    n4p1(4, 1, 8) by_all Exact;
+    n4p4(4, 4, 4) by_all Fast Watertight;
+    n4p8(4, 8, 16) by_all Watertight;
+    n8p4(8, 4, 16) by_all Exact;
+    n8p8(8, 8, 8) by_all Fast Watertight Exact;
+    n8p16(8, 16, 4) by_all Watertight;
+    n16p8(16, 8, 8) by_all Watertight;
+    n16p16(16, 16, 16) by_all Fast Exact;
+);
+// For the lesser ones.
+combinations!(others:
+    n4p4(4, 4, 4) by_some Fast Exact;
+    n8p8(8, 8, 8) by_some Watertight;
+);
+
+/// A stream of rays and what they must hit.
+struct Batch {
+    rays: Vec<Ray>,
+    /// Whether each was aimed at an edge or a vertex.
+    aimed: Vec<bool>,
+    /// Whether each must hit something: those from inside of the mesh whose interval has no end.
+    inside: Vec<bool>,
+    fast: Vec<Hit>,
+    watertight: Vec<Hit>,
+    exact: Vec<Hit>,
+}
+
+/// What was found; `[kind of ray]` is random or aimed.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    /// For each precision.
+    precisions: [Counts; 3],
+}
+
+#[derive(Clone, Copy, Default)]
+struct Counts {
+    /// Rays, and those that must hit, and those of them that brute force misses.
+    rays: [usize; 2],
+    inside: [usize; 2],
+    misses: [usize; 2],
+    /// Answers of hierarchies, `[single, packets, hybrid][kind of ray]`, and those unlike brute
+    /// force's.
+    answers: [[usize; 2]; 3],
+    disagreements: [[usize; 2]; 3],
+}
+
+impl AddAssign for Tally {
+    fn add_assign(&mut self, other: Tally) {
+        for (ours, theirs) in self.precisions.iter_mut().zip(other.precisions) {
+            for kind in 0..2 {
+                ours.rays[kind] += theirs.rays[kind];
+                ours.inside[kind] += theirs.inside[kind];
+                ours.misses[kind] += theirs.misses[kind];
+                for kernel in 0..3 {
+                    ours.answers[kernel][kind] += theirs.answers[kernel][kind];
+                    ours.disagreements[kernel][kind] += theirs.disagreements[kernel][kind];
+                }
+            }
+        }
+    }
+}
+
+/// A precision with its brute force.
+trait Judged: Precision + Debug {
+    fn of(batch: &Batch) -> &[Hit];
+    fn counts(tally: &mut Tally) -> &mut Counts;
+}
+
+macro_rules! implement_judged {
+    ($($precision:ident, $field:ident, $number:literal;)*) => {$(
+        impl Judged for $precision {
+            fn of(batch: &Batch) -> &[Hit] {
+                &batch.$field
+            }
+            fn counts(tally: &mut Tally) -> &mut Counts {
+                &mut tally.precisions[$number]
+            }
+        }
+    )*};
+}
+implement_judged!(Fast, fast, 0; Watertight, watertight, 1; Exact, exact, 2;);
+
+fn by_all<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
+    simd: S,
+    precision: Pr,
+    bvh: &Bvh<N, P>,
+    batch: &Batch,
+    tally: &mut Tally,
+) where
+    S: Lanes<N> + Lanes<P> + Lanes<R>,
+{
+    by_some::<S, Pr, N, P, R>(simd, precision, bvh, batch, tally);
+    compare(simd, Packets::<R>, precision, bvh, batch, tally, 1);
+}
+
+fn by_some<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
+    simd: S,
+    precision: Pr,
+    bvh: &Bvh<N, P>,
+    batch: &Batch,
+    tally: &mut Tally,
+) where
+    S: Lanes<N> + Lanes<P> + Lanes<R>,
+{
+    compare(simd, Single, precision, bvh, batch, tally, 0);
+    compare(simd, Hybrid::<R>, precision, bvh, batch, tally, 2);
+}
+
+fn compare<S, Pr: Judged, const N: usize, const P: usize>(
+    simd: S,
+    kernel: impl Kernel<S, N, P> + Debug,
+    precision: Pr,
+    bvh: &Bvh<N, P>,
+    batch: &Batch,
+    tally: &mut Tally,
+    number: usize,
+) where
+    S: Lanes<N> + Lanes<P>,
+{
+    let (rays, expected, counts) = (&batch.rays, Pr::of(batch), Pr::counts(tally));
+    let mut hits = vec![Hit::miss(0.0); rays.len()];
+    let mut occluded = vec![false; rays.len()];
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            kernel.closest_hits(simd, precision, bvh.view(), rays, &mut hits, &AllHits);
+            kernel.any_hits(simd, precision, bvh.view(), rays, &mut occluded, &AllHits);
+        },
+    );
+    for i in 0..rays.len() {
+        let kind = usize::from(batch.aimed[i]);
+        counts.answers[number][kind] += 1;
+        if !same(&hits[i], &expected[i]) || occluded[i] != expected[i].is_hit() {
+            counts.disagreements[number][kind] += 1;
+            if counts.disagreements[number][kind] == 1 {
+                println!(
+                    "{precision:?}, {kernel:?}, {N} children, {P} triangles: {:x?}\n  {:?}, {}, expected {:?}",
+                    rays[i], hits[i], occluded[i], expected[i]
+                );
+            }
+        }
+    }
+}
+
+impl Scene {
+    fn new(center: f32, quality: BuildQuality, seed: u64) -> Scene {
+        let mesh = jittered_icosphere(LEVELS, &mut Random::new(seed)).translated(center);
+        let alone = |triangle| build(&mesh.positions, &[triangle], None, BuildQuality::Fast);
+        Scene {
+            center,
+            best: best::Trees::new(&mesh, quality),
+            others: others::Trees::new(&mesh, quality),
+            alone: mesh
+                .triangles
+                .iter()
+                .map(|&triangle| alone(triangle))
+                .collect(),
+            mesh,
+        }
+    }
+
+    /// From all around and inside; half of them in bundles. Aimed at edges and vertices, but for
+    /// a quarter. A few have an end.
+    fn batch(&self, random: &mut Random) -> Batch {
+        let mesh = &self.mesh;
+        let mut batch = Batch {
+            rays: Vec::new(),
+            aimed: Vec::new(),
+            inside: Vec::new(),
+            fast: Vec::new(),
+            watertight: Vec::new(),
+            exact: Vec::new(),
+        };
+        let (mut org, mut first, mut coherent, mut inside) = ([0.0; 3], 0, false, true);
+        for i in 0..BATCH {
+            if i % 32 == 0 {
+                coherent = random.below(2) == 0;
+                inside = random.below(4) != 0;
+                org = random.in_cube(if inside { 0.3 } else { 3.0 });
+                first = random.below(mesh.triangles.len());
+            }
+            if !coherent {
+                org = random.in_cube(if inside { 0.3 } else { 3.0 });
+                first = random.below(mesh.triangles.len());
+            }
+            let triangle = (first + random.below(4)) % mesh.triangles.len();
+            let corners = mesh.vertices(triangle);
+            let kind = random.below(4);
+            let (from, corner) = (random.below(3), random.unit());
+            let (p, q) = (corners[from], corners[(from + 1) % 3]);
+            let target = match kind {
+                0 => [0, 1, 2]
+                    .map(|axis| self.center + org[axis] + 1e-3 * p[axis])
+                    .map(|x| x + random.unit() - 0.5),
+                1 => p,
+                _ => [0, 1, 2].map(|axis| p[axis] + corner * (q[axis] - p[axis])),
+            };
+            let mut ray = aimed(org.map(|x| x + self.center), target);
+            if random.below(2) == 0 {
+                let length = ray.dir.iter().map(|x| x * x).sum::<f32>().sqrt();
+                ray.dir = ray.dir.map(|x| x / length);
+            }
+            let clipped = random.below(8) == 0;
+            if clipped {
+                ray.tmin = random.unit() * 0.5;
+                ray.tmax = ray.tmin + random.unit() * 2.0;
+            }
+            batch.rays.push(ray);
+            batch.aimed.push(kind != 0);
+            batch.inside.push(inside && !clipped);
+        }
+        let rays = &batch.rays;
+        let of_all = |ray: &Ray| closest_hit_of_all(mesh, ray, &AllHits);
+        batch.watertight = rays.iter().map(of_all).collect();
+        let of_all = |ray: &Ray| exact_closest_hit_of_all(mesh, ray, &AllHits);
+        batch.exact = rays.iter().map(of_all).collect();
+        batch
+    }
+
+    /// The triangles one after the other, each in a hierarchy of its own.
+    fn fast_hits<S: Simd>(&self, simd: S, rays: &[Ray]) -> Vec<Hit> {
+        let closest = |ray: &Ray| {
+            let mut best = Hit::miss(ray.tmax);
+            for (prim, bvh) in self.alone.iter().enumerate() {
+                let hit = closest_hit(simd, Fast, bvh.view(), ray, &AllHits);
+                if hit.is_hit() && (hit.t < best.t || !best.is_hit()) {
+                    best = Hit {
+                        prim: prim as u32,
+                        ..hit
+                    };
+                }
+            }
+            best
+        };
+        simd.vectorize(
+            #[inline(always)]
+            || rays.iter().map(closest).collect(),
+        )
+    }
+
+    /// One batch of rays through everything.
+    fn trial(&self, seed: u64) -> Tally {
+        let mut random = Random::new(seed);
+        let mut batch = self.batch(&mut random);
+        let mut tally = Tally::default();
+        let level = Level::new();
+        // The narrowest first, since it is on every machine of its kind.
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some(simd) = level.as_sse2() {
+                batch.fast = self.fast_hits(simd, &batch.rays);
+                self.others.compare(simd, &batch, &mut tally);
+            }
+            if let Some(simd) = level.as_sse4_2() {
+                batch.fast = self.fast_hits(simd, &batch.rays);
+                self.others.compare(simd, &batch, &mut tally);
+            }
+            if let Some(simd) = level.as_avx2() {
+                batch.fast = self.fast_hits(simd, &batch.rays);
+                self.others.compare(simd, &batch, &mut tally);
+            }
+        }
+        fearless_simd::dispatch!(level, simd => {
+            batch.fast = self.fast_hits(simd, &batch.rays);
+            self.best.compare(simd, &batch, &mut tally)
+        });
+        let expected = [&batch.fast, &batch.watertight, &batch.exact];
+        for (counts, hits) in tally.precisions.iter_mut().zip(expected) {
+            for (i, hit) in hits.iter().enumerate() {
+                let kind = usize::from(batch.aimed[i]);
+                counts.rays[kind] += 1;
+                counts.inside[kind] += usize::from(batch.inside[i]);
+                counts.misses[kind] += usize::from(batch.inside[i] && !hit.is_hit());
+            }
+        }
+        tally
+    }
+}
+
+/// So many batches of rays, a fifth at each offset.
+fn trials(batches: usize) -> Tally {
+    let qualities = [BuildQuality::Fast, BuildQuality::Medium, BuildQuality::Best];
+    let offsets = [0.0, 3.7, 37.0, 1e3, 1e4];
+    let scenes: Vec<Scene> = (0..batches.min(15))
+        .map(|i| Scene::new(offsets[i % 5], qualities[i % 3], i as u64))
+        .collect();
+    let add = |mut a: Tally, b: Tally| {
+        a += b;
+        a
+    };
+    (0..batches)
+        .into_par_iter()
+        .map(|i| scenes[i % scenes.len()].trial(1000 + i as u64))
+        .reduce(Tally::default, add)
+}
+
+fn report(tally: &Tally) {
+    for (name, counts) in ["Fast", "Watertight", "Exact"]
+        .iter()
+        .zip(&tally.precisions)
+    {
+        for (kind, rays) in ["random", "aimed"].iter().enumerate() {
+            println!(
+                "{name:10} {rays:6}: {} rays, {} from inside, of which {} miss",
+                counts.rays[kind], counts.inside[kind], counts.misses[kind],
+            );
+            for (kernel, name) in ["single", "packets", "hybrid"].iter().enumerate() {
+                let (answers, disagreements) = (
+                    counts.answers[kernel][kind],
+                    counts.disagreements[kernel][kind],
+                );
+                println!(
+                    "    {name:8} {answers:12} answers, {disagreements} disagree{}",
+                    if disagreements == 0 {
+                        format!(" (less than {:.1e} at 95 %)", 3.0 / answers as f64)
+                    } else {
+                        format!(" ({:.2e})", disagreements as f64 / answers as f64)
+                    }
+                );
+            }
+        }
+    }
+}
+
+fn check(tally: &Tally) {
+    report(tally);
+    let [fast, watertight, exact] = &tally.precisions;
+    for counts in [watertight, exact] {
+        assert_eq!(counts.disagreements, [[0; 2]; 3]);
+        assert_eq!(counts.misses, [0; 2]);
+    }
+    for kernel in 0..3 {
+        assert_eq!(fast.disagreements[kernel][0], 0);
+        // None in five million answers was measured.
+        assert!(fast.disagreements[kernel][1] * 100_000 <= fast.answers[kernel][1]);
+    }
+}
+
+#[test]
+fn every_kernel_agrees_with_brute_force() {
+    let batches = if cfg!(miri) {
+        1
+    } else if cfg!(debug_assertions) {
+        5
+    } else {
+        30
+    };
+    check(&trials(batches));
+}
+
+/// As many rays as the variable RAYS says, ten million if it is not set:
+/// `RAYS=1e7 cargo test --release -p residual-bvh -- --ignored --nocapture ten_million`.
+#[test]
+#[ignore = "takes an hour or so on one core"]
+fn ten_million_rays_agree_with_brute_force() {
+    let rays = std::env::var("RAYS").map_or(1e7, |rays| rays.parse().expect("a number of rays"));
+    check(&trials((rays / BATCH as f64).ceil() as usize));
+}
