@@ -123,18 +123,17 @@ pub fn variants() -> Vec<Variant> {
         Single(Single, 1): 16 x 16, Fast;
         Single(Single, 1): 4 x 4, Watertight;
         Single(Single, 1): 8 x 8, Watertight;
+        Single(Single, 1): 16 x 8, Watertight;
         Single(Single, 1): 16 x 16, Watertight;
+        Single(Single, 1): 8 x 8, Exact;
+        Single(Single, 1): 16 x 16, Exact;
         Packet(Packets::<4>, 4): 4 x 4, Fast;
         Packet(Packets::<8>, 8): 8 x 8, Fast;
         Packet(Packets::<16>, 16): 16 x 16, Fast;
         Hybrid(Hybrid::<4>, 4): 4 x 4, Fast;
         Hybrid(Hybrid::<8>, 8): 8 x 8, Fast;
-        Hybrid(Hybrid::<16>, 16): 4 x 4, Fast;
-        Hybrid(Hybrid::<16>, 16): 8 x 4, Fast;
         Hybrid(Hybrid::<16>, 16): 8 x 8, Fast;
-        Hybrid(Hybrid::<16>, 16): 16 x 8, Fast;
         Hybrid(Hybrid::<16>, 16): 16 x 16, Fast;
-        Hybrid(Hybrid::<4>, 4): 4 x 4, Watertight;
         Hybrid(Hybrid::<8>, 8): 8 x 8, Watertight;
         Hybrid(Hybrid::<16>, 16): 16 x 16, Watertight;
     ]
