@@ -23,6 +23,8 @@ pub trait Lanes<const N: usize>: fearless_simd::Simd {
     fn splat(self, x: f32) -> Self::Float;
     /// The array's elements in order.
     fn load(self, array: &[f32; N]) -> Self::Float;
+    /// The array's elements in order, as floats.
+    fn load_bytes(self, array: &[u8; N]) -> Self::Float;
     /// Writes the lanes in order.
     fn store(self, a: Self::Float, array: &mut [f32; N]);
     /// `a + b`.
@@ -74,6 +76,11 @@ macro_rules! implement_lanes {
             #[inline(always)]
             fn load(self, array: &[f32; $n]) -> $float<S> {
                 $float::load_array_ref(self, array)
+            }
+            #[inline(always)]
+            fn load_bytes(self, array: &[u8; $n]) -> $float<S> {
+                // The compiler makes two instructions of it.
+                $float::load_array(self, array.map(f32::from))
             }
             #[inline(always)]
             fn store(self, a: $float<S>, array: &mut [f32; $n]) {
@@ -165,6 +172,10 @@ macro_rules! implement_narrow_lanes {
             #[inline(always)]
             fn load(self, array: &[f32; $n]) -> [f32; $n] {
                 *array
+            }
+            #[inline(always)]
+            fn load_bytes(self, array: &[u8; $n]) -> [f32; $n] {
+                array.map(f32::from)
             }
             #[inline(always)]
             fn store(self, a: [f32; $n], array: &mut [f32; $n]) {

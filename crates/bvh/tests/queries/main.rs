@@ -6,6 +6,7 @@ mod dispatched;
 mod instances;
 mod mesh;
 mod oracle;
+mod quantized;
 mod refit;
 mod robustness;
 mod runner;
