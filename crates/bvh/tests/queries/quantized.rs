@@ -318,7 +318,7 @@ fn slivers_and_flat_grids() {
     assert!(check(&mesh, &rays) > rays.len() / 5);
 }
 
-/// From the size of denormal boxes to that of boxes which no grid covers.
+/// Scenes as small and as large as the triangle test bears.
 #[test]
 fn every_scale() {
     let mut random = Random::new(125);
