@@ -2,8 +2,8 @@
 
 use std::mem::{align_of, offset_of, size_of};
 
-use crate::Bounds;
 use crate::validate::{InvalidBvh, check_structure};
+use crate::{Bounds, Boxes};
 
 /// Levels of inner nodes on the longest path, the root's included. The builder keeps to it and
 /// [`BvhView::new`] checks it, so that the traversal's stack cannot overflow.
@@ -185,19 +185,19 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
 
 /// A hierarchy whose structure is known to be sound, wherever its bytes came from.
 #[derive(Clone, Copy, Debug)]
-pub struct BvhView<'a, const N: usize, const P: usize = N> {
-    nodes: &'a [Node<N>],
+pub struct BvhView<'a, const N: usize, const P: usize = N, B = Node<N>> {
+    nodes: &'a [B],
     packets: &'a [TrianglePacket<P>],
 }
 
-impl<'a, const N: usize, const P: usize> BvhView<'a, N, P> {
+impl<'a, const N: usize, const P: usize, B: Boxes<N>> BvhView<'a, N, P, B> {
     /// Checks everything that the kernels' memory safety and termination rest on: a root, children
     /// and packets in range, a tree with parents before children, a depth within the stack's bound;
     /// and also that every node's boxes lie inside the box that its parent holds for it.
     pub fn new(
-        nodes: &'a [Node<N>],
+        nodes: &'a [B],
         packets: &'a [TrianglePacket<P>],
-    ) -> Result<BvhView<'a, N, P>, InvalidBvh> {
+    ) -> Result<BvhView<'a, N, P, B>, InvalidBvh> {
         check_structure(nodes, packets)?;
         Ok(BvhView { nodes, packets })
     }
@@ -206,18 +206,18 @@ impl<'a, const N: usize, const P: usize> BvhView<'a, N, P> {
     ///
     /// # Safety
     /// [`BvhView::new`] must succeed on these slices, as it does on the nodes and packets of a
-    /// [`Bvh`].
+    /// [`Bvh`] or a [`crate::QuantizedBvh`].
     #[inline(always)]
     pub unsafe fn new_unchecked(
-        nodes: &'a [Node<N>],
+        nodes: &'a [B],
         packets: &'a [TrianglePacket<P>],
-    ) -> BvhView<'a, N, P> {
+    ) -> BvhView<'a, N, P, B> {
         BvhView { nodes, packets }
     }
 
     /// The nodes, the root first.
     #[inline(always)]
-    pub fn nodes(&self) -> &'a [Node<N>] {
+    pub fn nodes(&self) -> &'a [B] {
         self.nodes
     }
 

@@ -262,7 +262,7 @@ where
             }
             // SAFETY: the root is there.
             let mut hit = unsafe {
-                search::<S, N, P, Pr, F, ANY>(
+                search::<S, N, P, Pr, F, _, ANY>(
                     self.simd,
                     self.precision,
                     self.bvh.objects[placed.bvh as usize].view(),

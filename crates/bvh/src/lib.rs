@@ -97,12 +97,29 @@
 //! # Layout
 //! Everything is aligned to cache lines of 64 bytes. One line of `Node<2>` holds both children.
 //!
-//! | `N` | bytes of a [`Node`] | `P` | bytes of a [`TrianglePacket`] |
-//! |----:|--------------------:|----:|------------------------------:|
-//! |   2 |                  64 |   1 |                            64 |
-//! |   4 |                 128 |   4 |                           192 |
-//! |   8 |                 256 |   8 |                           320 |
-//! |  16 |                 448 |  16 |                           640 |
+//! | `N` | bytes of a [`Node`] | of a [`QuantizedNode`] | `P` | bytes of a [`TrianglePacket`] |
+//! |----:|--------------------:|----------------------:|----:|------------------------------:|
+//! |   2 |                  64 |                    64 |   1 |                            64 |
+//! |   4 |                 128 |                    64 |   4 |                           192 |
+//! |   8 |                 256 |                   128 |   8 |                           320 |
+//! |  16 |                 448 |                   192 |  16 |                           640 |
+//!
+//! A [`QuantizedBvh`] is a [`Bvh`] with smaller nodes and the same answers.
+//!
+//! ```
+//! # use residual_bvh::{BuildQuality, Bvh, Ray, build};
+//! use fearless_simd::{Level, dispatch};
+//! use residual_bvh::{AllHits, QuantizedBvh, Watertight, closest_hit};
+//!
+//! # let positions = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+//! # let bvh: Bvh<8> = build(&positions, &[[0, 1, 2]], None, BuildQuality::Fast);
+//! # let ray = Ray { org: [0.0, 0.0, 1.0], tmin: 0.0, dir: [0.0, 0.0, -1.0], tmax: 10.0 };
+//! let small = QuantizedBvh::from(bvh.clone());
+//! assert!(small.memory_bytes() < bvh.memory_bytes());
+//! let hit = dispatch!(Level::new(), simd =>
+//!     closest_hit(simd, Watertight, small.view(), &ray, &AllHits));
+//! assert_eq!(hit, bvh.closest_hit(&ray));
+//! ```
 //!
 //! # Kernels
 //! The methods of [`Bvh`] look for the machine's instruction set at every call. Code that is
@@ -140,6 +157,7 @@ mod balance;
 mod binary;
 mod binning;
 mod bounds;
+mod boxes;
 mod build;
 mod bvh;
 mod clip;
@@ -155,6 +173,7 @@ mod placed;
 mod ploc;
 mod precision;
 mod presplit;
+mod quantized;
 mod ray;
 mod refit;
 mod reinsert;
@@ -172,6 +191,7 @@ mod triangle;
 mod validate;
 
 pub use bounds::Bounds;
+pub use boxes::Boxes;
 pub use build::{BuildQuality, build, build_with_progress};
 pub use bvh::{Bvh, BvhView, Node, TrianglePacket};
 pub use dispatch::HasKernels;
@@ -181,6 +201,7 @@ pub use instances::{
     closest_instance_hit,
 };
 pub use precision::{Exact, Fast, Precision, Watertight};
+pub use quantized::{QuantizedBvh, QuantizedNode};
 pub use ray::{Hit, Ray};
 pub use serial::LoadError;
 pub use simd::Lanes;

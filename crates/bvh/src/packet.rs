@@ -15,13 +15,13 @@ use crate::single::{query, search};
 use crate::slab::Slab;
 use crate::stream::Class;
 use crate::triangle::{LaneHits, OneTriangle, Shear};
-use crate::{BvhView, Culling, Hit, HitFilter, Lanes, Precision, Ray};
+use crate::{Boxes, BvhView, Culling, Hit, HitFilter, Lanes, Precision, Ray};
 
 /// What stays the same for all packets of a stream.
-pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F> {
+pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F, B> {
     pub(crate) simd: S,
     pub(crate) precision: Pr,
-    pub(crate) bvh: BvhView<'a, N, P>,
+    pub(crate) bvh: BvhView<'a, N, P, B>,
     pub(crate) filter: &'a F,
     /// So many rays of a packet, or fewer, are traced as single rays.
     pub(crate) few: u32,
@@ -40,8 +40,8 @@ struct Entry {
 /// As in `stack.rs`: each level leaves at most N - 1 siblings behind.
 const STACK_CAPACITY: usize = MAX_DEPTH * 16;
 
-impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
-    PacketKernel<'_, S, N, P, Pr, F>
+impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>>
+    PacketKernel<'_, S, N, P, Pr, F, B>
 {
     /// Traces one ray alone.
     #[inline(always)]
@@ -49,7 +49,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
     where
         S: Lanes<N> + Lanes<P>,
     {
-        query::<S, N, P, Pr, F, ANY>(self.simd, self.precision, self.bvh, ray, self.filter)
+        query::<S, N, P, Pr, F, B, ANY>(self.simd, self.precision, self.bvh, ray, self.filter)
     }
 
     /// Traces at most `R` rays of one class, which `members` number and `columns` hold.
@@ -82,7 +82,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
                 for lane in lanes(active) {
                     // SAFETY: this is the root or a child of one of the hierarchy's nodes.
                     let hit = unsafe {
-                        search::<S, N, P, Pr, F, ANY>(
+                        search::<S, N, P, Pr, F, B, ANY>(
                             simd,
                             self.precision,
                             self.bvh,
@@ -117,7 +117,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter>
                     }
                     let entry = Entry {
                         distance: distances[slot],
-                        child: Child(node.children[slot]),
+                        child: Child(node.children()[slot]),
                         rays: touching,
                     };
                     // Insertion, nearest on top; where any hit will do, the order is the builder's.

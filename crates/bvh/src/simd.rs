@@ -6,7 +6,7 @@
 //! cracks.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x4, f32x8, f32x16, mask32x4, mask32x8, mask32x16};
+use fearless_simd::{f32x4, f32x8, f32x16, mask32x4, mask32x8, mask32x16, u8x16};
 
 /// `N` lanes of `f32` on the instruction set that the token `Self` stands for; `N` is 1, 2, 4, 8
 /// or 16.
@@ -23,6 +23,8 @@ pub trait Lanes<const N: usize>: fearless_simd::Simd {
     fn splat(self, x: f32) -> Self::Float;
     /// The array's elements in order.
     fn load(self, array: &[f32; N]) -> Self::Float;
+    /// The array's elements in order, as floats.
+    fn load_bytes(self, array: &[u8; N]) -> Self::Float;
     /// Writes the lanes in order.
     fn store(self, a: Self::Float, array: &mut [f32; N]);
     /// `a + b`.
@@ -62,7 +64,7 @@ pub trait Lanes<const N: usize>: fearless_simd::Simd {
 const SECOND_OPERAND_WINS: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
 
 macro_rules! implement_lanes {
-    ($n:literal, $float:ident, $mask:ident) => {
+    ($n:literal, $float:ident, $mask:ident, $bytes:ident) => {
         impl<S: fearless_simd::Simd> Lanes<$n> for S {
             type Float = $float<S>;
             type Mask = $mask<S>;
@@ -74,6 +76,10 @@ macro_rules! implement_lanes {
             #[inline(always)]
             fn load(self, array: &[f32; $n]) -> $float<S> {
                 $float::load_array_ref(self, array)
+            }
+            #[inline(always)]
+            fn load_bytes(self, array: &[u8; $n]) -> $float<S> {
+                $bytes(self, array)
             }
             #[inline(always)]
             fn store(self, a: $float<S>, array: &mut [f32; $n]) {
@@ -147,9 +153,35 @@ macro_rules! implement_lanes {
     };
 }
 
-implement_lanes!(4, f32x4, mask32x4);
-implement_lanes!(8, f32x8, mask32x8);
-implement_lanes!(16, f32x16, mask32x16);
+// The compiler makes two instructions of each of these; of an array's elements converted one by one
+// it does so for 16 only.
+
+#[inline(always)]
+fn load_bytes_4<S: fearless_simd::Simd>(simd: S, array: &[u8; 4]) -> f32x4<S> {
+    let mut padded = [0; 16];
+    padded[..4].copy_from_slice(array);
+    let (shorts, _) = simd.widen_u8x16(u8x16::load_array(simd, padded));
+    let (ints, _) = simd.widen_u16x8(shorts);
+    simd.cvt_f32_i32x4(ints.bitcast())
+}
+
+#[inline(always)]
+fn load_bytes_8<S: fearless_simd::Simd>(simd: S, array: &[u8; 8]) -> f32x8<S> {
+    let mut padded = [0; 16];
+    padded[..8].copy_from_slice(array);
+    let (shorts, _) = simd.widen_u8x16(u8x16::load_array(simd, padded));
+    let (low, high) = simd.widen_u16x8(shorts);
+    simd.cvt_f32_i32x8(simd.combine_i32x4(low.bitcast(), high.bitcast()))
+}
+
+#[inline(always)]
+fn load_bytes_16<S: fearless_simd::Simd>(simd: S, array: &[u8; 16]) -> f32x16<S> {
+    f32x16::load_array(simd, array.map(f32::from))
+}
+
+implement_lanes!(4, f32x4, mask32x4, load_bytes_4);
+implement_lanes!(8, f32x8, mask32x8, load_bytes_8);
+implement_lanes!(16, f32x16, mask32x16, load_bytes_16);
 
 /// Too narrow for registers: arrays, left to the compiler.
 macro_rules! implement_narrow_lanes {
@@ -165,6 +197,10 @@ macro_rules! implement_narrow_lanes {
             #[inline(always)]
             fn load(self, array: &[f32; $n]) -> [f32; $n] {
                 *array
+            }
+            #[inline(always)]
+            fn load_bytes(self, array: &[u8; $n]) -> [f32; $n] {
+                array.map(f32::from)
             }
             #[inline(always)]
             fn store(self, a: [f32; $n], array: &mut [f32; $n]) {

@@ -7,7 +7,7 @@ use crate::filter::improve;
 use crate::slab::Slab;
 use crate::traverse::{Visitor, traverse};
 use crate::triangle::Shear;
-use crate::{BvhView, Hit, HitFilter, Lanes, Precision, Ray};
+use crate::{Boxes, BvhView, Hit, HitFilter, Lanes, Precision, Ray};
 
 /// The nearest hit in the ray's interval that `filter` accepts; of several at the same distance,
 /// the one with the smallest triangle index.
@@ -15,14 +15,14 @@ use crate::{BvhView, Hit, HitFilter, Lanes, Precision, Ray};
 pub fn closest_hit<S, const N: usize, const P: usize>(
     simd: S,
     precision: impl Precision,
-    bvh: BvhView<'_, N, P>,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
     ray: &Ray,
     filter: &impl HitFilter,
 ) -> Hit
 where
     S: Lanes<N> + Lanes<P>,
 {
-    query::<S, N, P, _, _, false>(simd, precision, bvh, ray, filter)
+    query::<S, N, P, _, _, _, false>(simd, precision, bvh, ray, filter)
 }
 
 /// Whether there is a hit in the ray's interval that `filter` accepts: exactly when
@@ -31,14 +31,14 @@ where
 pub fn any_hit<S, const N: usize, const P: usize>(
     simd: S,
     precision: impl Precision,
-    bvh: BvhView<'_, N, P>,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
     ray: &Ray,
     filter: &impl HitFilter,
 ) -> bool
 where
     S: Lanes<N> + Lanes<P>,
 {
-    query::<S, N, P, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
+    query::<S, N, P, _, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
 }
 
 /// Either query; where any hit will do, the hit is any.
@@ -49,11 +49,12 @@ pub(crate) fn query<
     const P: usize,
     Pr: Precision,
     F: HitFilter,
+    B: Boxes<N>,
     const ANY: bool,
 >(
     simd: S,
     precision: Pr,
-    bvh: BvhView<'_, N, P>,
+    bvh: BvhView<'_, N, P, B>,
     ray: &Ray,
     filter: &F,
 ) -> Hit
@@ -66,7 +67,7 @@ where
     let (tmin, tmax) = ray.interval();
     // SAFETY: the root is there.
     let best = unsafe {
-        search::<S, N, P, Pr, F, ANY>(
+        search::<S, N, P, Pr, F, B, ANY>(
             simd,
             precision,
             bvh,
@@ -89,10 +90,10 @@ where
 /// # Safety
 /// `start` must be the hierarchy's root or one of its nodes' children.
 #[inline(always)]
-pub(crate) unsafe fn search<S, const N: usize, const P: usize, Pr, F, const ANY: bool>(
+pub(crate) unsafe fn search<S, const N: usize, const P: usize, Pr, F, B, const ANY: bool>(
     simd: S,
     precision: Pr,
-    bvh: BvhView<'_, N, P>,
+    bvh: BvhView<'_, N, P, B>,
     start: Child,
     ray: &Ray,
     tmin: f32,
@@ -103,6 +104,7 @@ where
     S: Lanes<N> + Lanes<P>,
     Pr: Precision,
     F: HitFilter,
+    B: Boxes<N>,
 {
     let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
     let mut search = Search::<S, P, Pr, F, ANY> {

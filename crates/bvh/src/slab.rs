@@ -15,9 +15,8 @@
 //! The same test serves one ray against the `N` boxes of a node, `N` rays against one box, and the
 //! envelope of a packet of rays against `N` boxes.
 
-use crate::bvh::Node;
 use crate::columns::{Columns, greatest, least};
-use crate::{Lanes, Ray};
+use crate::{Boxes, Lanes, Ray};
 
 const STRETCH: f32 = 1.0 / (1 << 20) as f32;
 const REACH: f32 = 1.0 / (1 << 22) as f32;
@@ -186,20 +185,20 @@ impl<S: Lanes<N>, const N: usize> Slab<S, N> {
     }
 
     /// The lanes whose ray touches its box within `[tmin, tmax]`, as bits, and where it enters.
-    /// `plane(row)` gives the boxes' planes in the order of [`Node::bounds`].
+    /// `plane(axis, row)` gives the boxes' planes as [`Boxes::plane`].
     #[inline(always)]
     fn touched(
         &self,
         simd: S,
-        plane: impl Fn(usize) -> S::Float,
+        plane: impl Fn(usize, usize) -> S::Float,
         tmax: S::Float,
     ) -> (u32, S::Float) {
         let near = |axis: usize| {
-            let plane = plane(self.near_row[axis]);
+            let plane = plane(axis, self.near_row[axis]);
             simd.mul_add(plane, self.near_scale[axis], self.near_shift[axis])
         };
         let far = |axis: usize| {
-            let plane = plane(self.near_row[axis] ^ 1);
+            let plane = plane(axis, self.near_row[axis] ^ 1);
             simd.mul_add(plane, self.far_scale[axis], self.far_shift[axis])
         };
         let entry = simd.max_number(near(0), self.tmin);
@@ -211,12 +210,18 @@ impl<S: Lanes<N>, const N: usize> Slab<S, N> {
 
     /// One ray, or an envelope, against the boxes of a node.
     #[inline(always)]
-    pub(crate) fn touched_children(&self, simd: S, node: &Node<N>, tmax: f32) -> (u32, S::Float) {
-        let plane = |row: usize| {
-            // SAFETY: near rows are 0 to 5, and so are they with the low bit flipped.
-            simd.load(unsafe { node.bounds.get_unchecked(row) })
+    pub(crate) fn touched_children(
+        &self,
+        simd: S,
+        node: &impl Boxes<N>,
+        tmax: f32,
+    ) -> (u32, S::Float) {
+        let plane = |axis: usize, row: usize| {
+            // SAFETY: near rows are of their axis, and so are they with the low bit flipped.
+            unsafe { node.plane(simd, axis, row) }
         };
-        self.touched(simd, plane, simd.splat(tmax))
+        let (touched, entry) = self.touched(simd, plane, simd.splat(tmax));
+        (touched & node.used(), entry)
     }
 
     /// A ray a lane against one box of a node.
@@ -224,11 +229,11 @@ impl<S: Lanes<N>, const N: usize> Slab<S, N> {
     pub(crate) fn touching_rays<const W: usize>(
         &self,
         simd: S,
-        node: &Node<W>,
+        node: &impl Boxes<W>,
         slot: usize,
         tmax: &[f32; N],
     ) -> u32 {
-        let plane = |row: usize| simd.splat(node.bounds[row % 6][slot % W]);
+        let plane = |axis: usize, row: usize| simd.splat(node.plane_of(slot, axis, row));
         self.touched(simd, plane, simd.load(tmax)).0
     }
 }

@@ -4,7 +4,7 @@ use crate::columns::Columns;
 use crate::packet::PacketKernel;
 use crate::slab::{Octant, octant};
 use crate::triangle::{Axes, axes};
-use crate::{BvhView, Hit, HitFilter, Lanes, Precision, Ray, any_hit, closest_hit};
+use crate::{Boxes, BvhView, Hit, HitFilter, Lanes, Precision, Ray, any_hit, closest_hit};
 
 /// How a stream of rays is traced. The answers are the same.
 pub trait Kernel<S, const N: usize, const P: usize>: Copy {
@@ -16,7 +16,7 @@ pub trait Kernel<S, const N: usize, const P: usize>: Copy {
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>>,
         rays: &[Ray],
         hits: &mut [Hit],
         filter: &impl HitFilter,
@@ -30,7 +30,7 @@ pub trait Kernel<S, const N: usize, const P: usize>: Copy {
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>>,
         rays: &[Ray],
         occluded: &mut [bool],
         filter: &impl HitFilter,
@@ -60,7 +60,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>>,
         rays: &[Ray],
         hits: &mut [Hit],
         filter: &impl HitFilter,
@@ -76,7 +76,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>>,
         rays: &[Ray],
         occluded: &mut [bool],
         filter: &impl HitFilter,
@@ -99,7 +99,7 @@ macro_rules! implement_packet_kernel {
                 self,
                 simd: S,
                 precision: impl Precision,
-                bvh: BvhView<'_, N, P>,
+                bvh: BvhView<'_, N, P, impl Boxes<N>>,
                 rays: &[Ray],
                 hits: &mut [Hit],
                 filter: &impl HitFilter,
@@ -113,7 +113,7 @@ macro_rules! implement_packet_kernel {
                     few: $few,
                 };
                 for (rays, hits) in rays.chunks(WINDOW).zip(hits.chunks_mut(WINDOW)) {
-                    window::<S, N, P, R, _, _, false>(&kernel, rays, hits);
+                    window::<S, N, P, R, _, _, _, false>(&kernel, rays, hits);
                 }
             }
 
@@ -122,7 +122,7 @@ macro_rules! implement_packet_kernel {
                 self,
                 simd: S,
                 precision: impl Precision,
-                bvh: BvhView<'_, N, P>,
+                bvh: BvhView<'_, N, P, impl Boxes<N>>,
                 rays: &[Ray],
                 occluded: &mut [bool],
                 filter: &impl HitFilter,
@@ -138,7 +138,7 @@ macro_rules! implement_packet_kernel {
                 let mut hits = [Hit::miss(0.0); WINDOW];
                 for (rays, occluded) in rays.chunks(WINDOW).zip(occluded.chunks_mut(WINDOW)) {
                     let hits = &mut hits[..rays.len()];
-                    window::<S, N, P, R, _, _, true>(&kernel, rays, hits);
+                    window::<S, N, P, R, _, _, _, true>(&kernel, rays, hits);
                     for (hit, occluded) in hits.iter().zip(occluded) {
                         *occluded = hit.is_hit();
                     }
@@ -218,14 +218,15 @@ fn is_coherent(rays: &[Ray]) -> bool {
 
 /// Traces at most [`WINDOW`] rays.
 #[inline(always)]
-fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, const ANY: bool>(
-    kernel: &PacketKernel<'_, S, N, P, Pr, F>,
+fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, B, const ANY: bool>(
+    kernel: &PacketKernel<'_, S, N, P, Pr, F, B>,
     rays: &[Ray],
     hits: &mut [Hit],
 ) where
     S: Lanes<N> + Lanes<P> + Lanes<R>,
     Pr: Precision,
     F: HitFilter,
+    B: Boxes<N>,
 {
     const { assert!(R <= 32) };
     let coherent = is_coherent(rays);
@@ -242,25 +243,26 @@ fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, const ANY: b
             let columns = Columns::<R>::gather(rays, members);
             match columns.class(kernel.simd) {
                 Some(class) => kernel.trace::<R, ANY>(columns, rays, members, class, hits),
-                None => sort::<S, N, P, R, _, _, ANY>(kernel, rays, hits),
+                None => sort::<S, N, P, R, _, _, _, ANY>(kernel, rays, hits),
             }
         }
     } else {
-        sort::<S, N, P, R, _, _, ANY>(kernel, rays, hits);
+        sort::<S, N, P, R, _, _, _, ANY>(kernel, rays, hits);
     }
 }
 
 /// Sorts at most [`WINDOW`] rays by class, keeping their order in each, and traces packets of
 /// neighbours.
 #[inline(always)]
-fn sort<S, const N: usize, const P: usize, const R: usize, Pr, F, const ANY: bool>(
-    kernel: &PacketKernel<'_, S, N, P, Pr, F>,
+fn sort<S, const N: usize, const P: usize, const R: usize, Pr, F, B, const ANY: bool>(
+    kernel: &PacketKernel<'_, S, N, P, Pr, F, B>,
     rays: &[Ray],
     hits: &mut [Hit],
 ) where
     S: Lanes<N> + Lanes<P> + Lanes<R>,
     Pr: Precision,
     F: HitFilter,
+    B: Boxes<N>,
 {
     let mut numbers = [0u8; WINDOW];
     let mut ends = [0u16; Class::INVALID + 1];

@@ -5,10 +5,10 @@
 
 use std::ops::ControlFlow;
 
-use crate::Lanes;
-use crate::bvh::{Child, Node};
+use crate::bvh::Child;
 use crate::slab::Slab;
 use crate::stack::Stack;
+use crate::{Boxes, Lanes};
 
 /// What happens at leaves.
 pub(crate) trait Visitor {
@@ -28,7 +28,7 @@ pub(crate) trait Visitor {
 #[inline(always)]
 pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, V: Visitor>(
     simd: S,
-    nodes: &[Node<N>],
+    nodes: &[impl Boxes<N>],
     start: Child,
     slab: &Slab<S, N>,
     visitor: &mut V,
@@ -45,9 +45,9 @@ pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, V: Visitor>(
             // one left at most N - 1 behind, since one of its children was descended into.
             current = unsafe {
                 if V::ANY {
-                    stack.descend_unsorted(touched, &node.children)
+                    stack.descend_unsorted(touched, node.children())
                 } else {
-                    stack.descend(simd, touched, entry, &node.children)
+                    stack.descend(simd, touched, entry, node.children())
                 }
             };
         }

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use crate::bvh::{Child, MAX_DEPTH, Node, TrianglePacket};
+use crate::Boxes;
+use crate::bvh::{Child, MAX_DEPTH, TrianglePacket};
 
 /// Why nodes and packets do not form a hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +67,7 @@ impl fmt::Display for InvalidBvh {
 impl std::error::Error for InvalidBvh {}
 
 pub(crate) fn check_structure<const N: usize, const P: usize>(
-    nodes: &[Node<N>],
+    nodes: &[impl Boxes<N>],
     packets: &[TrianglePacket<P>],
 ) -> Result<(), InvalidBvh> {
     check_nodes(nodes, packets.len())
@@ -75,7 +76,7 @@ pub(crate) fn check_structure<const N: usize, const P: usize>(
 /// For leaves that name some of `packet_count` packets, or of other things. One pass suffices
 /// because parents precede their children.
 pub(crate) fn check_nodes<const N: usize>(
-    nodes: &[Node<N>],
+    nodes: &[impl Boxes<N>],
     packet_count: usize,
 ) -> Result<(), InvalidBvh> {
     if nodes.is_empty() {
@@ -86,7 +87,7 @@ pub(crate) fn check_nodes<const N: usize>(
     levels[0] = 1;
     for (index, node) in nodes.iter().enumerate() {
         for slot in 0..N {
-            let child = Child(node.children[slot]);
+            let child = Child(node.children()[slot]);
             if child.is_leaf() {
                 if child.first_packet() + child.packet_count() > packet_count {
                     return Err(InvalidBvh::BadLeaf { node: index, slot });

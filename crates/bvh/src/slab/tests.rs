@@ -5,7 +5,7 @@ use fearless_simd::{Level, dispatch};
 
 use super::Slab;
 use crate::bvh::{Child, Node};
-use crate::{Bounds, Lanes, Ray};
+use crate::{Bounds, Lanes, QuantizedNode, Ray};
 
 /// Which of the boxes the ray touches, as bits; all widths must agree.
 fn touched(ray: &Ray, boxes: &[Bounds; 4]) -> u32 {
@@ -170,4 +170,51 @@ fn rays_in_the_planes_of_boxes() {
             }
         }
     }
+}
+
+/// Quantised boxes are touched where plain ones are, and unused slots never: they have no box that
+/// would be empty by the slack, which from afar is greater than the node.
+#[test]
+fn quantised_slots() {
+    fn check<S: Lanes<N>, const N: usize>(simd: S, ray: &Ray, node: &Node<N>, used: usize) {
+        let slab = Slab::<S, N>::of_ray(simd, ray, 0.0);
+        let (plain, _) = slab.touched_children(simd, node, f32::INFINITY);
+        let (quantized, _) = slab.touched_children(simd, &QuantizedNode::from(node), f32::INFINITY);
+        assert_eq!(plain & !quantized, 0, "{ray:?}");
+        assert_eq!(quantized >> used, 0, "{ray:?}");
+    }
+    fn node<const N: usize>(random: &mut Random, used: usize) -> Node<N> {
+        let mut node = Node::VACANT;
+        for slot in 0..used {
+            let lo = [0; 3].map(|_| random.below(1000) as f32 * 1e-5);
+            let hi = lo.map(|x| x + random.below(1000) as f32 * 1e-5);
+            node.set_child(slot, &Bounds { lo, hi }, Child::leaf(slot, 1));
+        }
+        node
+    }
+    let mut random = Random(8);
+    let mut touched = 0;
+    for round in 0..20_000 {
+        let used = random.below(4) as usize;
+        let distance = [1.0, 1e3, 1e6][round % 3];
+        let org = [0; 3].map(|_| (random.below(2001) - 1000) as f32 * 1e-3 * distance);
+        let ray = Ray {
+            org,
+            tmin: 0.0,
+            dir: org.map(|x| random.below(20) as f32 * 1e-3 - x),
+            tmax: f32::INFINITY,
+        };
+        let (four, sixteen) = (node::<4>(&mut random, used), node::<16>(&mut random, used));
+        let inverted = Node {
+            bounds: [0, 1, 2, 3, 4, 5].map(|row| [[0.02, 0.0][row % 2]; 4]),
+            ..Node::VACANT
+        };
+        touched += dispatch!(Level::new(), simd => {
+            check(simd, &ray, &four, used);
+            check(simd, &ray, &sixteen, used);
+            let slab = Slab::<_, 4>::of_ray(simd, &ray, 0.0);
+            slab.touched_children(simd, &inverted, f32::INFINITY).0 & 1
+        });
+    }
+    assert!(touched > 1000, "inverted boxes would have done: {touched}");
 }

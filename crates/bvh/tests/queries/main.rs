@@ -8,6 +8,7 @@ mod integers;
 mod kernels;
 mod mesh;
 mod oracle;
+mod quantized;
 mod refit;
 mod robustness;
 mod runner;

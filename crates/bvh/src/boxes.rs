@@ -1,0 +1,65 @@
+//! What the kernels read of a node: `N` boxes and what they hold, stored as they are ([`Node`]) or
+//! in fewer bits ([`crate::QuantizedNode`]).
+
+use std::fmt::Debug;
+
+use crate::bvh::Node;
+use crate::{Bounds, Lanes};
+
+/// A layout of nodes that the kernels can traverse: [`Node`] and [`crate::QuantizedNode`], and
+/// nothing else.
+///
+/// Planes are numbered as the rows of [`Node::bounds`]: `2 * axis`, and one more for the upper.
+pub trait Boxes<const N: usize>: sealed::Sealed + Copy + Debug + Send + Sync {
+    /// What each box holds, as in [`Node::children`].
+    fn children(&self) -> &[u32; N];
+
+    /// The slots that hold anything, as bits; more may be set where the box alone keeps rays out.
+    fn used(&self) -> u32;
+
+    /// One plane of each box; NaN where the box does not end.
+    ///
+    /// # Safety
+    /// `row` must be one of the two of this axis.
+    unsafe fn plane<S: Lanes<N>>(&self, simd: S, axis: usize, row: usize) -> S::Float;
+
+    /// The same number for one box. `row` is of this axis.
+    fn plane_of(&self, slot: usize, axis: usize, row: usize) -> f32;
+
+    /// One box; empty in an unused slot.
+    fn child_bounds(&self, slot: usize) -> Bounds;
+}
+
+pub(crate) mod sealed {
+    /// Soundness rests on children that do not change between check and use.
+    pub trait Sealed {}
+}
+
+impl<const N: usize> sealed::Sealed for Node<N> {}
+
+impl<const N: usize> Boxes<N> for Node<N> {
+    #[inline(always)]
+    fn children(&self) -> &[u32; N] {
+        &self.children
+    }
+
+    #[inline(always)]
+    fn used(&self) -> u32 {
+        u32::MAX
+    }
+
+    #[inline(always)]
+    unsafe fn plane<S: Lanes<N>>(&self, simd: S, _axis: usize, row: usize) -> S::Float {
+        // SAFETY: there are six rows, by this function's contract.
+        simd.load(unsafe { self.bounds.get_unchecked(row) })
+    }
+
+    #[inline(always)]
+    fn plane_of(&self, slot: usize, _axis: usize, row: usize) -> f32 {
+        self.bounds[row % 6][slot % N]
+    }
+
+    fn child_bounds(&self, slot: usize) -> Bounds {
+        Node::child_bounds(self, slot)
+    }
+}
