@@ -1,0 +1,100 @@
+//! Every kernel on a handful of triangles: small enough for miri, which holds the unsafe code to the letter.
+//!
+//! ```text
+//! MIRIFLAGS="-Zmiri-tree-borrows -Zmiri-ignore-leaks -Zmiri-disable-isolation" RUSTFLAGS="-C target-cpu=x86-64" \
+//!     cargo +nightly miri test -p residual-bvh --test small
+//! ```
+
+use fearless_simd::{Level, dispatch};
+use residual_bvh::{
+    AllHits, BuildQuality, Bvh, BvhView, Exact, Fast, Hit, Hybrid, Kernel, Lanes, Packets,
+    QuantizedBvh, Ray, Single, Watertight, build,
+};
+
+/// Squares behind each other, two triangles each.
+fn squares() -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    for square in 0..6u32 {
+        let z = -(square as f32);
+        positions.extend([[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]]);
+        triangles.extend([[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|i| 4 * square + i)));
+    }
+    (positions, triangles)
+}
+
+/// Towards the squares, one beside them, one that is no ray.
+fn rays() -> Vec<Ray> {
+    let ray = |x: f32, z: f32| Ray {
+        org: [x, 0.25, z],
+        tmin: 0.0,
+        dir: [0.01, 0.02, -1.0],
+        tmax: f32::INFINITY,
+    };
+    let mut rays: Vec<Ray> = (0..6)
+        .map(|i| ray(0.1 * i as f32, 0.5 - i as f32))
+        .collect();
+    rays.push(ray(3.0, 1.0));
+    rays.push(Ray {
+        dir: [0.0; 3],
+        ..ray(0.5, 1.0)
+    });
+    rays
+}
+
+#[inline(always)]
+fn check<S, const N: usize, const P: usize>(simd: S, bvh: BvhView<'_, N, P>)
+where
+    S: Lanes<N> + Lanes<P> + Lanes<4>,
+{
+    let rays = rays();
+    let mut expected = vec![Hit::miss(0.0); rays.len()];
+    Single.closest_hits(simd, Watertight, bvh, &rays, &mut expected, &AllHits);
+    let hit: Vec<bool> = expected.iter().map(Hit::is_hit).collect();
+    assert_eq!(hit, [true, true, true, true, true, true, false, false]);
+    for (i, hit) in expected[..6].iter().enumerate() {
+        assert_eq!((hit.prim / 2, hit.t), (i as u32, 0.5));
+    }
+    let mut hits = expected.clone();
+    Packets::<4>.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
+    assert_eq!(hits, expected);
+    Hybrid::<4>.closest_hits(simd, Exact, bvh, &rays, &mut hits, &AllHits);
+    assert!(hits.iter().zip(&expected).all(|(a, b)| a.prim == b.prim));
+    let mut occluded = vec![false; rays.len()];
+    Packets::<4>.any_hits(simd, Fast, bvh, &rays, &mut occluded, &AllHits);
+    assert_eq!(occluded, hit);
+    Single.any_hits(simd, Fast, bvh, &rays, &mut occluded, &AllHits);
+    assert_eq!(occluded, hit);
+}
+
+fn tree<const N: usize, const P: usize>() -> Bvh<N, P> {
+    let (positions, triangles) = squares();
+    build(&positions, &triangles, None, BuildQuality::Fast)
+}
+
+#[test]
+fn every_width() {
+    let (two, four, eight, sixteen) = (
+        tree::<2, 1>(),
+        tree::<4, 4>(),
+        tree::<8, 4>(),
+        tree::<16, 16>(),
+    );
+    dispatch!(Level::new(), simd => {
+        check(simd, two.view());
+        check(simd, four.view());
+        check(simd, eight.view());
+        check(simd, sixteen.view());
+    });
+}
+
+#[test]
+fn quantized_nodes() {
+    let bvh = QuantizedBvh::from(tree::<4, 4>());
+    let rays = rays();
+    let mut hits = vec![Hit::miss(0.0); rays.len()];
+    dispatch!(Level::new(), simd => {
+        Single.closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
+    });
+    assert_eq!(hits.iter().filter(|hit| hit.is_hit()).count(), 6);
+}
