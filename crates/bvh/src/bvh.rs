@@ -90,6 +90,15 @@ impl<const P: usize> TrianglePacket<P> {
         vertices: [[[f32::NAN; P]; 3]; 3],
         prim_ids: [u32::MAX; P],
     };
+
+    /// Writes the corners of one lane.
+    pub(crate) fn set_corners(&mut self, lane: usize, corners: [[f32; 3]; 3]) {
+        for (rows, corner) in self.vertices.iter_mut().zip(corners) {
+            for (row, coordinate) in rows.iter_mut().zip(corner) {
+                row[lane] = coordinate;
+            }
+        }
+    }
 }
 
 /// A child as stored: the index of a node, or with the high bit set a leaf, `count` packets from

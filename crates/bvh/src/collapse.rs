@@ -18,7 +18,7 @@ use crate::validate::check_structure;
 use crate::{Bounds, Bvh};
 
 /// Cost of testing a ray against a packet, in units of testing it against a node.
-const PACKET_COST: f32 = 1.0;
+pub(crate) const PACKET_COST: f32 = 1.0;
 /// Packets in the largest leaf considered.
 const MAX_LEAF_PACKETS: usize = 4;
 /// Binary nodes of the largest subtree planned as one task.
@@ -304,11 +304,7 @@ impl Leaves {
 fn packet_of<const P: usize>(prims: &[u32], mesh: &Mesh<'_>) -> TrianglePacket<P> {
     let mut packet = TrianglePacket::VACANT;
     for (lane, &prim) in prims.iter().enumerate() {
-        for (rows, vertex) in packet.vertices.iter_mut().zip(mesh.vertices(prim)) {
-            for (row, coordinate) in rows.iter_mut().zip(vertex) {
-                row[lane] = coordinate;
-            }
-        }
+        packet.set_corners(lane, mesh.vertices(prim));
         let mark = if mesh.is_single_sided(prim) {
             SINGLE_SIDED
         } else {

@@ -1,7 +1,7 @@
 //! A packet of rays in columns, as vector lanes want them.
 
 use crate::ray::interval;
-use crate::slab::{LEAST, Octant};
+use crate::slab::{Octant, inverse};
 use crate::stream::Class;
 use crate::triangle::ordered;
 use crate::{Lanes, Ray};
@@ -91,10 +91,9 @@ impl<const R: usize> Columns<R> {
     pub(crate) fn inverse<S: Lanes<R>>(&self, simd: S, octant: Octant) -> [S::Float; 3] {
         let size = [0, 1, 2].map(|axis| simd.abs(simd.load(&self.dir[axis])));
         let longest = simd.max_number(simd.max_number(size[0], size[1]), size[2]);
-        let least = simd.mul(longest, simd.splat(LEAST));
         [0, 1, 2].map(|axis| {
-            let one = simd.splat(if octant[axis] { -1.0 } else { 1.0 });
-            simd.div(one, simd.max_number(size[axis], least))
+            let sign = simd.splat(if octant[axis] { -1.0 } else { 1.0 });
+            inverse(simd, sign, size[axis], longest)
         })
     }
 }

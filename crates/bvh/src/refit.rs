@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::build::has_area;
 use crate::bvh::{Child, SINGLE_SIDED, TrianglePacket};
+use crate::collapse::PACKET_COST;
 use crate::{Bounds, Bvh};
 
 impl<const N: usize, const P: usize> Bvh<N, P> {
@@ -51,8 +52,7 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
         self.sah_cost = self.measure_cost(&bounds);
     }
 
-    /// As the builder counts it, where a packet's test costs as much as a node's. `bounds` are those
-    /// of the nodes.
+    /// As the builder counts it. `bounds` are those of the nodes.
     fn measure_cost(&self, bounds: &[Bounds]) -> f32 {
         let mut cost = 0.0;
         for (node, bounds) in self.nodes.iter().zip(bounds) {
@@ -60,7 +60,8 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
             for slot in 0..N {
                 let child = Child(node.children[slot]);
                 if child.is_leaf() {
-                    cost += child.packet_count() as f64 * node.child_bounds(slot).half_area();
+                    let tests = PACKET_COST * child.packet_count() as f32;
+                    cost += f64::from(tests) * node.child_bounds(slot).half_area();
                 }
             }
         }
@@ -80,18 +81,15 @@ fn move_packet<const P: usize>(
     vertices: impl Fn(u32) -> [[f32; 3]; 3],
 ) -> Bounds {
     let mut bounds = Bounds::EMPTY;
-    for lane in (0..P).filter(|&lane| packet.prim_ids[lane] != u32::MAX) {
-        let mut moved = vertices(packet.prim_ids[lane] & !SINGLE_SIDED);
+    let marked = packet.prim_ids.into_iter().enumerate();
+    for (lane, marked) in marked.filter(|&(_, marked)| marked != u32::MAX) {
+        let mut moved = vertices(marked & !SINGLE_SIDED);
         if has_area(&moved) {
             bounds = bounds.union(&Bounds::of_padded_triangle(&moved));
         } else {
             moved = [[f32::NAN; 3]; 3];
         }
-        for (rows, vertex) in packet.vertices.iter_mut().zip(moved) {
-            for (row, coordinate) in rows.iter_mut().zip(vertex) {
-                row[lane] = coordinate;
-            }
-        }
+        packet.set_corners(lane, moved);
     }
     bounds
 }

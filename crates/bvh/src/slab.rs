@@ -21,7 +21,7 @@ use crate::{Boxes, Lanes, Ray};
 const STRETCH: f32 = 1.0 / (1 << 20) as f32;
 const REACH: f32 = 1.0 / (1 << 22) as f32;
 /// Least component of a direction, relative to the greatest.
-pub(crate) const LEAST: f32 = 1.0 / (1u128 << 64) as f32;
+const LEAST: f32 = 1.0 / (1u128 << 64) as f32;
 
 /// Which planes of a box a ray enters through: whether its direction is negative along each axis.
 pub(crate) type Octant = [bool; 3];
@@ -81,15 +81,27 @@ fn shift<S: Lanes<W>, const W: usize>(
     simd.sub(simd.mul(simd.abs(shift), simd.splat(reach)), shift)
 }
 
+/// The inverse of components of directions, of which `longest` are the greatest, from their signs
+/// and sizes.
+#[inline(always)]
+pub(crate) fn inverse<S: Lanes<W>, const W: usize>(
+    simd: S,
+    sign: S::Float,
+    size: S::Float,
+    longest: S::Float,
+) -> S::Float {
+    let least = simd.mul(longest, simd.splat(LEAST));
+    simd.div(sign, simd.max_number(size, least))
+}
+
 /// One ray's constants, and its octant.
 #[inline(always)]
 fn constants_of_ray<S: Lanes<4>>(simd: S, ray: &Ray) -> (Constants, Octant) {
     let padded = |[x, y, z]: [f32; 3]| [x, y, z, z];
     let dir = simd.load(&padded(ray.dir));
     let negative = simd.bits(simd.lt(dir, simd.splat(0.0)));
-    let one = simd.select(negative, simd.splat(-1.0), simd.splat(1.0));
-    let least = simd.splat(ray.longest() * LEAST);
-    let inv = simd.div(one, simd.max_number(simd.abs(dir), least));
+    let sign = simd.select(negative, simd.splat(-1.0), simd.splat(1.0));
+    let inv = inverse(simd, sign, simd.abs(dir), simd.splat(ray.longest()));
     let org = padded(ray.org);
     let octant = [0, 1, 2].map(|axis| negative >> axis & 1 == 1);
     (Constants::new(simd, org, inv, org, inv), octant)

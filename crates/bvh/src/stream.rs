@@ -229,15 +229,8 @@ fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, B, const ANY
     B: Boxes<N>,
 {
     const { assert!(R <= 32) };
-    let coherent = is_coherent(rays);
-    if kernel.few > 0 && !coherent {
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = kernel.single::<ANY>(ray);
-        }
-        return;
-    }
-    // Neighbours make good packets as they come. Others are sorted, more of them at once.
-    if coherent {
+    if is_coherent(rays) {
+        // Neighbours make good packets as they come.
         for (rays, hits) in rays.chunks(R).zip(hits.chunks_mut(R)) {
             let members = &IN_ORDER[..rays.len()];
             let columns = Columns::<R>::gather(rays, members);
@@ -245,6 +238,10 @@ fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, B, const ANY
                 Some(class) => kernel.trace::<R, ANY>(columns, rays, members, class, hits),
                 None => sort::<S, N, P, R, _, _, _, ANY>(kernel, rays, hits),
             }
+        }
+    } else if kernel.few > 0 {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = kernel.single::<ANY>(ray);
         }
     } else {
         sort::<S, N, P, R, _, _, _, ANY>(kernel, rays, hits);

@@ -2,8 +2,8 @@
 //!
 //! Moving the vertices to the ray's origin and shearing them is a function of ray and vertex
 //! alone, so triangles sharing a vertex see the same point. An edge is then decided by comparing
-//! two rounded products, which is exact and antisymmetric in its end points: one of two
-//! neighbours, or both, contains the ray. The paper's recomputation in double precision for
+//! two rounded products, through the sign of their difference, which is exact and antisymmetric in
+//! its end points: one of two neighbours, or both, contains the ray. The paper's recomputation in double precision for
 //! products that are equal after rounding is not needed: equality counts as inside, for both.
 
 use glam::DVec3;
@@ -23,7 +23,7 @@ impl Precision for Watertight {}
 /// How many times larger than twice the triangle's area the products may be whose differences are
 /// the areas of its parts, until the hit counts as ill-conditioned: a triangle seen edge-on.
 /// `bounds.rs` says how the boxes' padding follows from it.
-pub(crate) const CONDITION: f32 = 32.0;
+const CONDITION: f32 = 32.0;
 /// Areas near the underflow are not to be trusted either.
 const SMALLEST: f32 = 1e-30;
 
@@ -103,7 +103,7 @@ fn ill_conditioned_hit(ray: &Ray, corners: &[[f32; 3]; 3]) -> [f32; 3] {
 
 /// `[t, u, v]` of a line that passes inside the triangle, or at most by a rounding outside, in
 /// `f64`; not finite if it lies in the triangle's plane.
-pub(crate) fn line_meets_plane(ray: &Ray, corners: &[[f32; 3]; 3]) -> [f32; 3] {
+fn line_meets_plane(ray: &Ray, corners: &[[f32; 3]; 3]) -> [f32; 3] {
     let dir = DVec3::from(ray.dir.map(f64::from));
     let org = DVec3::from(ray.org.map(f64::from));
     let [a, b, c] = corners.map(|corner| DVec3::from(corner.map(f64::from)) - org);
