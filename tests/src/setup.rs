@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use residual_bvh::BuildQuality;
-use residual_device_cpu::lanes::OwnedBvh;
 use residual_device_cpu::{
-    CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer,
+    AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer,
 };
 use residual_render::film::Film;
 use residual_scenegen::desc::SceneDesc;
@@ -65,7 +64,7 @@ impl Look {
 /// A plan with the hierarchy that goes with a lane count.
 pub struct Prepared<'a> {
     plan: &'a Plan,
-    bvh: OwnedBvh,
+    bvh: AnyBvh,
     lanes: LaneCount,
 }
 
@@ -79,7 +78,7 @@ impl<'a> Prepared<'a> {
         } else {
             BuildQuality::Best
         };
-        let bvh = OwnedBvh::build(&plan.data, lanes, quality);
+        let bvh = AnyBvh::build(&plan.data, lanes, quality);
         Self { plan, bvh, lanes }
     }
 
@@ -109,7 +108,7 @@ impl<'a> Prepared<'a> {
         };
         let view = SceneView {
             buffers: self.plan.data.buffers(),
-            bvh: self.bvh.view(),
+            traversal: &self.bvh,
         };
         device.render(|| renderer, &view, &options, |_| {}).0
     }

@@ -1,8 +1,7 @@
 //! Whole renders whose radiance is known (hard case L-12): the interpreter on the CPU device, hand-made scenes.
 
 use residual_bvh::{BuildQuality, Culling};
-use residual_device_cpu::lanes::OwnedBvh;
-use residual_device_cpu::{CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView};
+use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView};
 use residual_render::camera::AnyCamera;
 use residual_render::domain::Buffer;
 use residual_render::film::Film;
@@ -106,10 +105,10 @@ fn render(
     samples: u32,
     max_depth: u32,
 ) -> Film {
-    let bvh = OwnedBvh::build(data, lanes, BuildQuality::Medium);
+    let bvh = AnyBvh::build(data, lanes, BuildQuality::Medium);
     let view = SceneView {
         buffers: data.buffers(),
-        bvh: bvh.view(),
+        traversal: &bvh,
     };
     let interpreter = Interpreter::new(structure.clone(), lanes);
     let device = CpuDevice::new(2).expect("threads");

@@ -8,10 +8,9 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use residual_bvh::BuildQuality;
-use residual_device_cpu::lanes::OwnedBvh;
 use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{
-    CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer,
+    AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer,
 };
 use residual_render::film::Film;
 use residual_scenegen::plan::Plan;
@@ -53,7 +52,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             scope.spawn(|| compiled.get_or_init(|| Compilation::run(&compiler, &plan, lanes)))
         });
         let bvh_start = Instant::now();
-        let bvh = OwnedBvh::build(&plan.data, lanes, quality(plan.data.triangle_count()));
+        let bvh = AnyBvh::build(&plan.data, lanes, quality(plan.data.triangle_count()));
         bvh_time = bvh_start.elapsed();
         if args.tier == TierArg::Specialized
             && let Some(compilation) = compilation
@@ -68,7 +67,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         }
         let view = SceneView {
             buffers: plan.data.buffers(),
-            bvh: bvh.view(),
+            traversal: &bvh,
         };
         let choose = || -> &dyn TileRenderer {
             match compiled.get() {

@@ -5,6 +5,7 @@
 //! one from emitted code, and [`plugin`] loads one from a shared library. All three run the same
 //! [`tile::render_tile`] and give the same bits.
 
+mod camera_rays;
 mod device;
 mod interpreter;
 pub mod lanes;
@@ -12,16 +13,18 @@ pub mod plugin;
 mod shade;
 mod stream;
 pub mod tile;
+pub mod traversal;
 
 pub use device::{CpuDevice, Progress, RenderOptions, RenderReport};
 pub use interpreter::Interpreter;
-pub use lanes::{AnyBvh, LaneCount};
+pub use lanes::LaneCount;
 pub use tile::{Counters, SceneView, TileJob, TileRenderer};
+pub use traversal::{AnyBvh, Traversal};
 
 /// What emitted code needs, under stable names.
 #[doc(hidden)]
 pub mod generated {
     pub use fearless_simd;
-    pub use residual_bvh::{Culling, Hit, HitFilter, Ray};
+    pub use residual_bvh::{Hit, Ray};
     pub use residual_render as render;
 }

@@ -3,18 +3,18 @@
 //! The boundary is C: one function that renders a tile, with pointers and lengths, and one that says what the library
 //! was made for. No Rust type with an unspecified layout crosses it.
 
-use std::ffi::OsStr;
-use std::fmt;
-use std::slice;
+use std::ffi::{OsStr, c_void};
+use std::{fmt, ptr, slice};
 
-use residual_bvh::{BvhView, Node, TrianglePacket};
+use residual_bvh::{Hit, Ray};
 use residual_render::domain::{Buffer, Buffers};
 
-use crate::lanes::{AnyBvh, LaneCount};
+use crate::lanes::LaneCount;
 use crate::tile::{Counters, SceneView, TileJob, TileRenderer};
+use crate::traversal::{Alpha, Traversal};
 
-/// Raised whenever the layout of anything here, of nodes and packets, or the meaning of buffers changes.
-const ABI_VERSION: u32 = 1;
+/// Raised whenever the layout of anything here or the meaning of buffers changes.
+const ABI_VERSION: u32 = 2;
 
 /// What a library was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,23 +22,18 @@ const ABI_VERSION: u32 = 1;
 pub struct Identity {
     abi_version: u32,
     lanes: u32,
-    node_size: u32,
-    packet_size: u32,
+    buffers: u32,
+    call_size: u32,
 }
 
 impl Identity {
     /// The identity of renderers with this lane count that are built from these sources.
     pub const fn new(lanes: u32) -> Self {
-        let (node, packet) = match lanes {
-            16 => (size_of::<Node<16>>(), size_of::<TrianglePacket<16>>()),
-            8 => (size_of::<Node<8>>(), size_of::<TrianglePacket<8>>()),
-            _ => (size_of::<Node<4>>(), size_of::<TrianglePacket<4>>()),
-        };
         Self {
             abi_version: ABI_VERSION,
             lanes,
-            node_size: node as u32,
-            packet_size: packet as u32,
+            buffers: Buffer::COUNT as u32,
+            call_size: size_of::<TileCall>() as u32,
         }
     }
 }
@@ -65,21 +60,140 @@ impl<T> RawSlice<T> {
         // SAFETY: pointer and length came from a slice that the caller vouches for.
         unsafe { slice::from_raw_parts(self.start, self.length) }
     }
+}
 
-    fn erase(self) -> RawSlice<()> {
-        RawSlice {
-            start: self.start.cast(),
-            length: self.length,
+/// An exclusive slice as C sees it.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct RawSliceMut<T> {
+    start: *mut T,
+    length: usize,
+}
+
+impl<T> RawSliceMut<T> {
+    fn new(slice: &mut [T]) -> Self {
+        Self {
+            start: slice.as_mut_ptr(),
+            length: slice.len(),
+        }
+    }
+
+    /// # Safety
+    /// It was made by [`RawSliceMut::new`] from a slice that lives, and is used by nobody else, for `'a`.
+    unsafe fn get<'a>(self) -> &'a mut [T] {
+        // SAFETY: pointer and length came from a slice that the caller vouches for.
+        unsafe { slice::from_raw_parts_mut(self.start, self.length) }
+    }
+}
+
+/// An [`Alpha`] as C sees it; none without a function.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct RawAlpha {
+    /// A `&Alpha`.
+    context: *const c_void,
+    covers: Option<unsafe extern "C" fn(*const c_void, *const Ray, *const Hit) -> bool>,
+}
+
+impl RawAlpha {
+    /// Borrows what `alpha` borrows: it must not be called after that is gone.
+    fn new(alpha: &Option<&Alpha<'_>>) -> Self {
+        /// # Safety
+        /// `context` is a `&Alpha`, and ray and hit are valid.
+        unsafe extern "C" fn covers(
+            context: *const c_void,
+            ray: *const Ray,
+            hit: *const Hit,
+        ) -> bool {
+            // SAFETY: by this function's contract.
+            unsafe { (*context.cast::<&Alpha<'_>>())(&*ray, &*hit) }
+        }
+        Self {
+            context: alpha
+                .as_ref()
+                .map_or(ptr::null(), |alpha| ptr::from_ref(alpha).cast()),
+            covers: alpha.is_some().then_some(covers),
+        }
+    }
+
+    /// Calls `f` with the alpha that this was made from.
+    ///
+    /// # Safety
+    /// That alpha is alive.
+    unsafe fn with<R>(self, f: impl FnOnce(Option<&Alpha<'_>>) -> R) -> R {
+        match self.covers {
+            None => f(None),
+            Some(covers) => f(Some(&|ray, hit| {
+                // SAFETY: the context is alive, says the caller, and goes with the function.
+                unsafe { covers(self.context, ray, hit) }
+            })),
         }
     }
 }
 
-impl RawSlice<()> {
-    fn of<T>(self) -> RawSlice<T> {
-        RawSlice {
-            start: self.start.cast(),
-            length: self.length,
+/// A [`Traversal`] as C sees it.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct RawTraversal {
+    /// A `&(dyn Traversal + Sync)`.
+    context: *const c_void,
+    closest_hits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<Hit>, RawAlpha),
+    any_hits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<bool>, RawAlpha),
+}
+
+impl RawTraversal {
+    fn new(traversal: &&(dyn Traversal + Sync)) -> Self {
+        /// # Safety
+        /// `context` is a `&(dyn Traversal + Sync)`, and the slices and the alpha are alive.
+        unsafe extern "C" fn closest_hits(
+            context: *const c_void,
+            rays: RawSlice<Ray>,
+            hits: RawSliceMut<Hit>,
+            alpha: RawAlpha,
+        ) {
+            // SAFETY: by this function's contract.
+            unsafe {
+                let traversal = *context.cast::<&(dyn Traversal + Sync)>();
+                alpha.with(|alpha| traversal.closest_hits(rays.get(), hits.get(), alpha));
+            }
         }
+        /// # Safety
+        /// As for `closest_hits`.
+        unsafe extern "C" fn any_hits(
+            context: *const c_void,
+            rays: RawSlice<Ray>,
+            occluded: RawSliceMut<bool>,
+            alpha: RawAlpha,
+        ) {
+            // SAFETY: by this function's contract.
+            unsafe {
+                let traversal = *context.cast::<&(dyn Traversal + Sync)>();
+                alpha.with(|alpha| traversal.any_hits(rays.get(), occluded.get(), alpha));
+            }
+        }
+        Self {
+            context: ptr::from_ref(traversal).cast(),
+            closest_hits,
+            any_hits,
+        }
+    }
+}
+
+// SAFETY: what it refers to is `Sync`, and nothing else is in it but functions.
+unsafe impl Sync for RawTraversal {}
+
+/// The library's side: what it refers to lives as long as the call.
+impl Traversal for RawTraversal {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&Alpha<'_>>) {
+        let (hits, alpha) = (RawSliceMut::new(hits), RawAlpha::new(&alpha));
+        // SAFETY: the function goes with the context, and all arguments outlive the call.
+        unsafe { (self.closest_hits)(self.context, RawSlice::new(rays), hits, alpha) }
+    }
+
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>) {
+        let (occluded, alpha) = (RawSliceMut::new(occluded), RawAlpha::new(&alpha));
+        // SAFETY: as above.
+        unsafe { (self.any_hits)(self.context, RawSlice::new(rays), occluded, alpha) }
     }
 }
 
@@ -87,13 +201,9 @@ impl RawSlice<()> {
 #[repr(C)]
 pub struct TileCall {
     words: [RawSlice<u32>; Buffer::COUNT],
-    nodes: RawSlice<()>,
-    packets: RawSlice<()>,
-    /// Width of the hierarchy: what `nodes` and `packets` are.
-    width: u32,
+    traversal: RawTraversal,
     job: TileJob,
-    radiance: *mut f32,
-    radiance_length: usize,
+    radiance: RawSliceMut<f32>,
     counters: Counters,
 }
 
@@ -165,31 +275,11 @@ impl LoadedRenderer {
 
 impl TileRenderer for LoadedRenderer {
     fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, radiance: &mut [f32]) -> Counters {
-        let (width, nodes, packets) = match scene.bvh {
-            AnyBvh::Four(bvh) => (
-                4,
-                RawSlice::new(bvh.nodes()).erase(),
-                RawSlice::new(bvh.packets()).erase(),
-            ),
-            AnyBvh::Eight(bvh) => (
-                8,
-                RawSlice::new(bvh.nodes()).erase(),
-                RawSlice::new(bvh.packets()).erase(),
-            ),
-            AnyBvh::Sixteen(bvh) => (
-                16,
-                RawSlice::new(bvh.nodes()).erase(),
-                RawSlice::new(bvh.packets()).erase(),
-            ),
-        };
         let mut call = TileCall {
             words: Buffer::ALL.map(|buffer| RawSlice::new(scene.buffers.get(buffer))),
-            nodes,
-            packets,
-            width,
+            traversal: RawTraversal::new(&scene.traversal),
             job: *job,
-            radiance: radiance.as_mut_ptr(),
-            radiance_length: radiance.len(),
+            radiance: RawSliceMut::new(radiance),
             counters: Counters::default(),
         };
         // SAFETY: every slice in the call outlives it, `radiance` is borrowed exclusively, and the function is the
@@ -204,27 +294,15 @@ impl TileRenderer for LoadedRenderer {
 /// # Safety
 /// `call` was made by [`LoadedRenderer`] and is not used by anybody else during the call.
 pub unsafe fn answer(call: *mut TileCall, renderer: &impl TileRenderer) {
-    // SAFETY: the pointer is valid and exclusive, says the caller; the slices in it were made from living slices of
-    // these types (the identity's sizes agree), and the hierarchy's views were sound when they were taken apart.
+    // SAFETY: the pointer is valid and exclusive, says the caller, and the slices in it were made from living slices of
+    // these types.
     unsafe {
         let call = &mut *call;
-        let buffers = Buffers::new(call.words.map(|words| words.get()));
-        let bvh = match call.width {
-            16 => AnyBvh::Sixteen(BvhView::new_unchecked(
-                call.nodes.of().get(),
-                call.packets.of().get(),
-            )),
-            8 => AnyBvh::Eight(BvhView::new_unchecked(
-                call.nodes.of().get(),
-                call.packets.of().get(),
-            )),
-            _ => AnyBvh::Four(BvhView::new_unchecked(
-                call.nodes.of().get(),
-                call.packets.of().get(),
-            )),
+        let view = SceneView {
+            buffers: Buffers::new(call.words.map(|words| words.get())),
+            traversal: &call.traversal,
         };
-        let radiance = slice::from_raw_parts_mut(call.radiance, call.radiance_length);
-        call.counters = renderer.render_tile(&SceneView { buffers, bvh }, &call.job, radiance);
+        call.counters = renderer.render_tile(&view, &call.job, call.radiance.get());
     }
 }
 

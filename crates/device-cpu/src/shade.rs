@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use residual_render::bsdf::Bsdf;
-use residual_render::domain::{Buffer, Lanes};
+use residual_render::domain::{Buffer, Lanes, MAX_LANES};
 use residual_render::light::LightKinds;
 use residual_render::material::Material;
 use residual_render::math::Color;
@@ -12,7 +12,7 @@ use residual_render::scene::MaterialVisitor;
 use residual_render::surface::Surface;
 use residual_render::tracer::{PathTracer, Tracer, Vertex};
 
-use crate::stream::{PathStream, ShadowStream, SortedHits};
+use crate::stream::{PathStream, Place, ShadowStream, SortedHits, add_to_pixel};
 
 /// Everything that shading one range needs.
 pub(crate) struct Shade<'a, D, S, L: ?Sized> {
@@ -22,9 +22,7 @@ pub(crate) struct Shade<'a, D, S, L: ?Sized> {
     pub(crate) range: Range<usize>,
     pub(crate) paths: &'a PathStream,
     pub(crate) hits: &'a SortedHits,
-    pub(crate) depth: u32,
-    /// No path goes on from here.
-    pub(crate) last: bool,
+    pub(crate) max_depth: u32,
     pub(crate) next: &'a mut PathStream,
     pub(crate) shadows: &'a mut ShadowStream,
     pub(crate) radiance: &'a mut [f32],
@@ -57,11 +55,10 @@ impl<D, S, L: ?Sized> Shade<'_, D, S, L> {
         L: LightKinds<D>,
     {
         let d = self.d;
-        for i in self.range.clone().step_by(D::LANES) {
-            let count = (self.range.end - i).min(D::LANES);
-            let valid = ((1_u64 << count) - 1) as u32;
-            let (path, ids) = self.paths.load(d, i);
-            let hit = self.hits.load(d, i);
+        for (places, valid) in lanes::<D>(self.range.clone()) {
+            let members = self.hits.members(places);
+            let (path, place) = self.paths.load(d, |lane| members[lane]);
+            let hit = self.hits.load(d, &members);
             let wo = -path.ray.dir;
             let mut surface = Surface::new(d, material.attributes(), &hit, path.ray.dir);
             let shading = material.shade(d, &mut surface, wo);
@@ -69,10 +66,11 @@ impl<D, S, L: ?Sized> Shade<'_, D, S, L> {
             if let Some(emission) = shading.emission {
                 let light = d.load(Buffer::TriangleLights, hit.prim);
                 let seen = self.tracer.on_hit(d, &path, &surface, emission, light);
-                add(d, &ids[..count], seen, self.radiance);
+                add(d, valid, place.pixel, seen, self.radiance);
             }
             let kind = shading.bsdf.kind();
-            if self.last || !(kind.scatters || kind.delta) {
+            let goes_on = valid & d.bits(d.lt_u(place.depth, d.uint(self.max_depth)));
+            if goes_on == 0 || !(kind.scatters || kind.delta) {
                 continue;
             }
             let bsdf = &shading.bsdf;
@@ -80,17 +78,20 @@ impl<D, S, L: ?Sized> Shade<'_, D, S, L> {
                 surface: &surface,
                 bsdf,
                 wo,
-                depth: d.uint(self.depth),
+                depth: place.depth,
             };
-            let id = d.word(ids);
             if kind.scatters && !self.lights.is_empty() {
                 let shadow = self.tracer.on_shadow(d, &path, &vertex, self.lights);
-                self.shadows
-                    .push(d, d.bits(shadow.active) & valid, &shadow, id);
+                let active = d.bits(shadow.active) & goes_on;
+                self.shadows.push(d, active, &shadow, place.pixel);
             }
             let bounce = self.tracer.on_bounce(d, &path, &vertex);
-            self.next
-                .push(d, d.bits(bounce.active) & valid, &bounce.path, id);
+            let next = Place {
+                depth: place.depth + d.uint(1),
+                ..place
+            };
+            let active = d.bits(bounce.active) & goes_on;
+            self.next.push(d, active, &bounce.path, next);
         }
     }
 }
@@ -101,32 +102,40 @@ pub(crate) fn shade_misses<D, S, L>(
     d: D,
     tracer: &PathTracer<S>,
     lights: &L,
-    range: &Range<usize>,
-    paths: &PathStream,
+    (paths, hits): (&PathStream, &SortedHits),
+    range: Range<usize>,
     radiance: &mut [f32],
 ) where
     D: Lanes,
     S: Sampler<D>,
     L: LightKinds<D> + ?Sized,
 {
-    for i in range.clone().step_by(D::LANES) {
-        let count = (range.end - i).min(D::LANES);
-        let (path, ids) = paths.load(d, i);
+    for (places, valid) in lanes::<D>(range) {
+        let members = hits.members(places);
+        let (path, place) = paths.load(d, |lane| members[lane]);
         let seen = tracer.on_miss(d, &path, lights);
-        add(d, &ids[..count], seen, radiance);
+        add(d, valid, place.pixel, seen, radiance);
     }
 }
 
-/// Adds colours to the pixels `ids`.
+/// A range in steps of as many places as there are lanes: what is left of it, and the lanes that are in it.
 #[inline(always)]
-fn add<D: Lanes>(d: D, ids: &[u32], color: Color<D::F>, radiance: &mut [f32]) {
-    let mut lanes = [[0.0; 16]; 3];
-    for (lanes, value) in lanes.iter_mut().zip([color.x, color.y, color.z]) {
-        d.store(value, &mut lanes[..D::LANES]);
-    }
-    for (lane, &id) in ids.iter().enumerate() {
-        for (channel, lanes) in lanes.iter().enumerate() {
-            radiance[id as usize * 3 + channel] += lanes[lane];
-        }
+fn lanes<D: Lanes>(range: Range<usize>) -> impl Iterator<Item = (Range<usize>, u32)> {
+    let end = range.end;
+    range.step_by(D::LANES).map(move |first| {
+        let count = (end - first).min(D::LANES);
+        (first..end, ((1_u64 << count) - 1) as u32)
+    })
+}
+
+/// Adds colours to pixels in the lanes whose bit is set.
+#[inline(always)]
+fn add<D: Lanes>(d: D, bits: u32, pixel: D::U, color: Color<D::F>, radiance: &mut [f32]) {
+    let [r, g, b] = [d.to_bits(color.x), d.to_bits(color.y), d.to_bits(color.z)];
+    let rows = d.rows([r, g, b, pixel]);
+    let mut bits = bits;
+    while bits != 0 {
+        add_to_pixel(radiance, rows[bits.trailing_zeros() as usize % MAX_LANES]);
+        bits &= bits - 1;
     }
 }

@@ -1,113 +1,109 @@
-//! Streams: paths, hits and shadow rays in structure-of-arrays form.
+//! Streams: paths, their hits and shadow rays, as records of whole rows of four words.
 //!
-//! Columns are `LANES` longer than their capacity, so that the last lanes of a stream can be loaded and stored
-//! whole; what lies beyond the length is stale, and masked wherever it would count.
+//! Records move to and from lanes by transposition in registers: a path is one cache line to read and to write, in
+//! whatever order, so that sorting moves numbers only, compaction is a store, and traversal finds its rays as it wants
+//! them. (Columns would be read one gather a component.)
 
 use std::ops::Range;
 
 use residual_bvh::{Hit, Ray};
-use residual_render::domain::Lanes;
-use residual_render::math::Vec3;
+use residual_render::domain::{Lanes, MAX_LANES};
 use residual_render::math::vec3::vec3;
 use residual_render::sampler::SampleKey;
 use residual_render::surface::{self, Ray as LaneRay};
 use residual_render::tracer::{Path, Shadow};
 
-use crate::tile::ray;
+type Row = [u32; 4];
 
-/// Three columns: a vector or colour for each path.
-type Columns3 = [Vec<f32>; 3];
+/// No ray: what streams are filled with.
+const NOWHERE: Ray = Ray {
+    org: [0.0; 3],
+    tmin: 0.0,
+    dir: [0.0; 3],
+    tmax: 0.0,
+};
 
-fn columns3(length: usize) -> Columns3 {
-    [(); 3].map(|()| vec![0.0; length])
+/// The rays' two rows. The first distance is 0: rays start beyond the error of their origin.
+#[inline(always)]
+fn ray_rows<D: Lanes>(d: D, ray: &LaneRay<D>) -> [[Row; MAX_LANES]; 2] {
+    let bits = |x: D::F| d.to_bits(x);
+    let (o, v) = (&ray.org, &ray.dir);
+    [
+        d.rows([bits(o.x), bits(o.y), bits(o.z), d.uint(0)]),
+        d.rows([bits(v.x), bits(v.y), bits(v.z), bits(ray.tmax)]),
+    ]
 }
 
 #[inline(always)]
-fn load3<D: Lanes>(d: D, columns: &Columns3, at: Range<usize>) -> Vec3<D::F> {
-    let [x, y, z] = columns.each_ref().map(|column| d.real(&column[at.clone()]));
-    vec3(x, y, z)
+fn ray_of_rows([ox, oy, oz, tmin]: Row, [dx, dy, dz, tmax]: Row) -> Ray {
+    let real = f32::from_bits;
+    Ray {
+        org: [real(ox), real(oy), real(oz)],
+        tmin: real(tmin),
+        dir: [real(dx), real(dy), real(dz)],
+        tmax: real(tmax),
+    }
 }
 
-/// Appends the lanes whose bit is set; whole vectors where all are.
-struct Compaction {
-    bits: u32,
-    at: usize,
-    all: bool,
+/// Appends the lanes whose bit is set to records that have room for all: `put(place, lane)` for each lane, the next one
+/// in the same place if the bit is not set. Returns the new length.
+#[inline(always)]
+fn compact<D: Lanes>(bits: u32, mut len: usize, mut put: impl FnMut(usize, usize)) -> usize {
+    if bits == 0 {
+        return len;
+    }
+    for lane in 0..D::LANES {
+        put(len, lane);
+        len += (bits >> lane & 1) as usize;
+    }
+    len
 }
 
-impl Compaction {
-    #[inline(always)]
-    fn new<D: Lanes>(bits: u32, at: usize) -> Self {
-        Self {
-            bits,
-            at,
-            all: bits == ((1_u64 << D::LANES) - 1) as u32,
-        }
-    }
+/// Adds a row of red, green, blue and pixel to that pixel.
+#[inline(always)]
+pub(crate) fn add_to_pixel(radiance: &mut [f32], [r, g, b, pixel]: Row) {
+    let at = pixel as usize * 3;
+    let sums = &mut radiance[at..at + 3];
+    sums[0] += f32::from_bits(r);
+    sums[1] += f32::from_bits(g);
+    sums[2] += f32::from_bits(b);
+}
 
-    #[inline(always)]
-    fn real<D: Lanes>(&self, d: D, value: D::F, column: &mut [f32]) {
-        if self.all {
-            d.store(value, &mut column[self.at..self.at + D::LANES]);
-            return;
-        }
-        let mut lanes = [0.0; 16];
-        d.store(value, &mut lanes[..D::LANES]);
-        self.compact(&lanes, column);
-    }
+/// Where a path belongs.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<U> {
+    /// Its pixel in the radiance of the job: sample, row, column.
+    pub(crate) pixel: U,
+    /// Number of the vertex that its ray is looking for; the first is 1.
+    pub(crate) depth: U,
+}
 
-    #[inline(always)]
-    fn real3<D: Lanes>(&self, d: D, value: Vec3<D::F>, columns: &mut Columns3) {
-        for (column, value) in columns.iter_mut().zip([value.x, value.y, value.z]) {
-            self.real(d, value, column);
-        }
-    }
-
-    #[inline(always)]
-    fn word<D: Lanes>(&self, d: D, value: D::U, column: &mut [u32]) {
-        if self.all {
-            d.store_word(value, &mut column[self.at..self.at + D::LANES]);
-            return;
-        }
-        let mut lanes = [0; 16];
-        d.store_word(value, &mut lanes[..D::LANES]);
-        self.compact(&lanes, column);
-    }
-
-    #[inline(always)]
-    fn compact<T: Copy>(&self, lanes: &[T; 16], column: &mut [T]) {
-        let mut bits = self.bits;
-        let to = &mut column[self.at..];
-        for place in to.iter_mut().take(bits.count_ones() as usize) {
-            *place = lanes[bits.trailing_zeros() as usize & 15];
-            bits &= bits - 1;
-        }
-    }
+/// What a path carries beside its ray.
+#[derive(Clone, Copy)]
+struct State {
+    /// Throughput and density.
+    weight: Row,
+    /// Sample key, and place.
+    place: Row,
 }
 
 /// Paths between two hits.
 pub(crate) struct PathStream {
-    org: Columns3,
-    dir: Columns3,
-    throughput: Columns3,
-    pdf: Vec<f32>,
-    pixel: Vec<u32>,
-    index: Vec<u32>,
-    id: Vec<u32>,
+    rays: Vec<Ray>,
+    states: Vec<State>,
     len: usize,
 }
 
 impl PathStream {
-    pub(crate) fn with_capacity(capacity: usize, lanes: usize) -> Self {
-        let length = capacity + lanes;
+    /// An empty stream of at most this many paths.
+    pub(crate) fn with_capacity(capacity: usize) -> Self {
+        let nothing = State {
+            weight: [0; 4],
+            place: [0; 4],
+        };
         Self {
-            org: columns3(length),
-            dir: columns3(length),
-            throughput: columns3(length),
-            pdf: vec![0.0; length],
-            pixel: vec![0; length],
-            index: vec![0; length],
-            id: vec![0; length],
+            rays: vec![NOWHERE; capacity + MAX_LANES],
+            states: vec![nothing; capacity + MAX_LANES],
             len: 0,
         }
     }
@@ -117,77 +113,92 @@ impl PathStream {
         self.len
     }
 
+    /// Whether the paths of all lanes can be added.
+    #[inline(always)]
+    pub(crate) fn has_room(&self) -> bool {
+        self.len + 2 * MAX_LANES <= self.rays.len()
+    }
+
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         self.len = 0;
     }
 
-    /// Ray number `i`, for traversal.
-    #[inline(always)]
-    pub(crate) fn ray(&self, i: usize) -> Ray {
-        let at = |columns: &Columns3| columns.each_ref().map(|column| column[i]);
-        ray(at(&self.org), at(&self.dir), f32::MAX)
+    /// The paths' rays.
+    pub(crate) fn rays(&self) -> &[Ray] {
+        &self.rays[..self.len]
     }
 
-    /// `LANES` paths from number `i` on, with their places in the tile.
+    /// `LANES` paths: `member(lane)` is the number of each.
     #[inline(always)]
-    pub(crate) fn load<D: Lanes>(&self, d: D, i: usize) -> (Path<D>, &[u32]) {
-        let at = i..i + D::LANES;
+    pub(crate) fn load<D: Lanes>(
+        &self,
+        d: D,
+        member: impl Fn(usize) -> usize,
+    ) -> (Path<D>, Place<D::U>) {
+        let real = |x: D::U| d.from_bits(x);
+        let [ox, oy, oz, _] = d.columns(|lane| {
+            let Ray { org: [x, y, z], .. } = self.rays[member(lane)];
+            [x.to_bits(), y.to_bits(), z.to_bits(), 0]
+        });
+        let [dx, dy, dz, tmax] = d.columns(|lane| {
+            let ray = &self.rays[member(lane)];
+            let [x, y, z] = ray.dir;
+            [x.to_bits(), y.to_bits(), z.to_bits(), ray.tmax.to_bits()]
+        });
+        let [r, g, b, pdf] = d.columns(|lane| self.states[member(lane)].weight);
+        let [key, index, pixel, depth] = d.columns(|lane| self.states[member(lane)].place);
         let path = Path {
             ray: LaneRay {
-                org: load3(d, &self.org, at.clone()),
-                dir: load3(d, &self.dir, at.clone()),
-                tmax: d.lit(f64::from(f32::MAX)),
+                org: vec3(real(ox), real(oy), real(oz)),
+                dir: vec3(real(dx), real(dy), real(dz)),
+                tmax: real(tmax),
             },
-            throughput: load3(d, &self.throughput, at.clone()),
-            pdf: d.real(&self.pdf[at.clone()]),
-            key: SampleKey {
-                pixel: d.word(&self.pixel[at.clone()]),
-                index: d.word(&self.index[at.clone()]),
-            },
+            throughput: vec3(real(r), real(g), real(b)),
+            pdf: real(pdf),
+            key: SampleKey { pixel: key, index },
         };
-        (path, &self.id[at])
+        (path, Place { pixel, depth })
     }
 
     /// Appends the paths whose bit is set.
     #[inline(always)]
-    pub(crate) fn push<D: Lanes>(&mut self, d: D, bits: u32, path: &Path<D>, id: D::U) {
-        let to = Compaction::new::<D>(bits, self.len);
-        to.real3(d, path.ray.org, &mut self.org);
-        to.real3(d, path.ray.dir, &mut self.dir);
-        to.real3(d, path.throughput, &mut self.throughput);
-        to.real(d, path.pdf, &mut self.pdf);
-        to.word(d, path.key.pixel, &mut self.pixel);
-        to.word(d, path.key.index, &mut self.index);
-        to.word(d, id, &mut self.id);
-        self.len += bits.count_ones() as usize;
-    }
-
-    fn reals(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
-        let vectors = [&mut self.org, &mut self.dir, &mut self.throughput];
-        vectors.into_iter().flatten().chain([&mut self.pdf])
+    pub(crate) fn push<D: Lanes>(&mut self, d: D, bits: u32, path: &Path<D>, place: Place<D::U>) {
+        let [orgs, dirs] = ray_rows(d, &path.ray);
+        let [r, g, b] = [path.throughput.x, path.throughput.y, path.throughput.z];
+        let weights = d.rows([
+            d.to_bits(r),
+            d.to_bits(g),
+            d.to_bits(b),
+            d.to_bits(path.pdf),
+        ]);
+        let places = d.rows([path.key.pixel, path.key.index, place.pixel, place.depth]);
+        self.len = compact::<D>(bits, self.len, |at, lane| {
+            self.rays[at] = ray_of_rows(orgs[lane], dirs[lane]);
+            self.states[at] = State {
+                weight: weights[lane],
+                place: places[lane],
+            };
+        });
     }
 }
 
 /// Shadow rays with what they are worth.
 pub(crate) struct ShadowStream {
-    org: Columns3,
-    dir: Columns3,
-    contribution: Columns3,
-    tmax: Vec<f32>,
-    id: Vec<u32>,
+    rays: Vec<Ray>,
+    /// Contribution, and pixel.
+    worth: Vec<Row>,
+    occluded: Vec<bool>,
     len: usize,
 }
 
 impl ShadowStream {
-    pub(crate) fn with_capacity(capacity: usize, lanes: usize) -> Self {
-        let length = capacity + lanes;
+    /// An empty stream of at most this many rays.
+    pub(crate) fn with_capacity(capacity: usize) -> Self {
         Self {
-            org: columns3(length),
-            dir: columns3(length),
-            contribution: columns3(length),
-            tmax: vec![0.0; length],
-            id: vec![0; length],
+            rays: vec![NOWHERE; capacity + MAX_LANES],
+            worth: vec![[0; 4]; capacity + MAX_LANES],
+            occluded: vec![false; capacity],
             len: 0,
         }
     }
@@ -202,134 +213,114 @@ impl ShadowStream {
         self.len = 0;
     }
 
-    #[inline(always)]
-    pub(crate) fn ray(&self, i: usize) -> Ray {
-        let at = |columns: &Columns3| columns.each_ref().map(|column| column[i]);
-        ray(at(&self.org), at(&self.dir), self.tmax[i])
+    /// The rays, and where it is said whether they are occluded.
+    pub(crate) fn rays_and_answers(&mut self) -> (&[Ray], &mut [bool]) {
+        (&self.rays[..self.len], &mut self.occluded[..self.len])
     }
 
-    /// Adds ray `i`'s contribution to its pixel.
-    #[inline(always)]
-    pub(crate) fn add_to(&self, i: usize, radiance: &mut [f32]) {
-        let pixel = self.id[i] as usize * 3;
-        for (channel, column) in self.contribution.iter().enumerate() {
-            radiance[pixel + channel] += column[i];
+    /// Adds what the rays that are not occluded are worth to their pixels.
+    pub(crate) fn add_to(&self, radiance: &mut [f32]) {
+        for (&row, &occluded) in self.worth.iter().zip(&self.occluded[..self.len]) {
+            if !occluded {
+                add_to_pixel(radiance, row);
+            }
         }
     }
 
+    /// Appends the rays whose bit is set.
     #[inline(always)]
-    pub(crate) fn push<D: Lanes>(&mut self, d: D, bits: u32, shadow: &Shadow<D>, id: D::U) {
-        let to = Compaction::new::<D>(bits, self.len);
-        to.real3(d, shadow.ray.org, &mut self.org);
-        to.real3(d, shadow.ray.dir, &mut self.dir);
-        to.real3(d, shadow.contribution, &mut self.contribution);
-        to.real(d, shadow.ray.tmax, &mut self.tmax);
-        to.word(d, id, &mut self.id);
-        self.len += bits.count_ones() as usize;
+    pub(crate) fn push<D: Lanes>(&mut self, d: D, bits: u32, shadow: &Shadow<D>, pixel: D::U) {
+        let [orgs, dirs] = ray_rows(d, &shadow.ray);
+        let worth = &shadow.contribution;
+        let [r, g, b] = [worth.x, worth.y, worth.z];
+        let worth = d.rows([d.to_bits(r), d.to_bits(g), d.to_bits(b), pixel]);
+        self.len = compact::<D>(bits, self.len, |at, lane| {
+            self.rays[at] = ray_of_rows(orgs[lane], dirs[lane]);
+            self.worth[at] = worth[lane];
+        });
     }
 }
 
 /// Hits of a path stream, and the order that puts paths with the same program side by side.
 pub(crate) struct SortedHits {
-    u: Vec<f32>,
-    v: Vec<f32>,
-    prim: Vec<u32>,
+    hits: Vec<Hit>,
     /// Program of each path; the number of programs for a miss.
-    program: Vec<u32>,
+    programs: Vec<u32>,
     /// Path that belongs at each place.
     order: Vec<u32>,
     /// First place of each program, of the misses, and the end.
     starts: Vec<usize>,
-    scratch_real: Vec<f32>,
-    scratch_word: Vec<u32>,
 }
 
 impl SortedHits {
-    pub(crate) fn with_capacity(capacity: usize, lanes: usize, programs: usize) -> Self {
-        let length = capacity + lanes;
+    /// For at most this many paths.
+    pub(crate) fn with_capacity(capacity: usize, programs: usize) -> Self {
         Self {
-            u: vec![0.0; length],
-            v: vec![0.0; length],
-            prim: vec![0; length],
-            program: vec![0; capacity],
+            hits: vec![Hit::miss(0.0); capacity],
+            programs: vec![0; capacity],
             order: vec![0; capacity],
             starts: vec![0; programs + 2],
-            scratch_real: vec![0.0; length],
-            scratch_word: vec![0; length],
         }
     }
 
-    fn miss(&self) -> usize {
-        self.starts.len() - 2
+    /// Where the hits of these paths belong.
+    pub(crate) fn answers(&mut self, paths: Range<usize>) -> &mut [Hit] {
+        &mut self.hits[paths]
     }
 
-    /// Records the hit of path `i`; `program` is `None` for a miss.
+    /// Sorts the first `len` paths by program: a counting sort, stable. `program_of` gives a triangle's program.
     #[inline(always)]
-    pub(crate) fn set(&mut self, i: usize, hit: &Hit, program: Option<u32>) {
-        self.u[i] = hit.u;
-        self.v[i] = hit.v;
-        self.prim[i] = hit.prim;
-        self.program[i] = program.unwrap_or(self.miss() as u32);
-    }
-
-    /// Sorts hits and paths by program: a counting sort, stable.
-    pub(crate) fn sort(&mut self, paths: &mut PathStream) {
-        let len = paths.len;
+    pub(crate) fn sort(&mut self, len: usize, program_of: impl Fn(u32) -> u32) {
+        let miss = self.starts.len() as u32 - 2;
         self.starts.fill(0);
-        for &program in &self.program[..len] {
-            self.starts[program as usize + 1] += 1;
+        for (hit, program) in self.hits[..len].iter().zip(&mut self.programs) {
+            *program = if hit.is_hit() {
+                program_of(hit.prim)
+            } else {
+                miss
+            };
+            self.starts[*program as usize + 1] += 1;
         }
         for k in 1..self.starts.len() {
             self.starts[k] += self.starts[k - 1];
         }
         // The starts serve as cursors, and are shifted back afterwards.
-        for (i, &program) in self.program[..len].iter().enumerate() {
+        for (path, &program) in self.programs[..len].iter().enumerate() {
             let cursor = &mut self.starts[program as usize];
-            self.order[*cursor] = i as u32;
+            self.order[*cursor] = path as u32;
             *cursor += 1;
         }
         self.starts.rotate_right(1);
         self.starts[0] = 0;
-
-        let order = &self.order[..len];
-        for column in paths.reals().chain([&mut self.u, &mut self.v]) {
-            permute(column, &mut self.scratch_real, order);
-        }
-        for column in [
-            &mut paths.pixel,
-            &mut paths.index,
-            &mut paths.id,
-            &mut self.prim,
-        ] {
-            permute(column, &mut self.scratch_word, order);
-        }
     }
 
-    /// Places of the paths that hit a program.
+    /// Places of the paths that hit a program; of the misses, for the number of programs.
     pub(crate) fn range(&self, program: usize) -> Range<usize> {
         self.starts[program]..self.starts[program + 1]
     }
 
-    /// Places of the paths that hit nothing.
-    pub(crate) fn misses(&self) -> Range<usize> {
-        self.range(self.miss())
+    /// The path at each of `LANES` places from the first of `range` on; beyond its end, the last again.
+    #[inline(always)]
+    pub(crate) fn members(&self, range: Range<usize>) -> [usize; MAX_LANES] {
+        let order = &self.order[range];
+        let mut members = [0; MAX_LANES];
+        for (lane, member) in members.iter_mut().enumerate() {
+            *member = order[lane.min(order.len() - 1)] as usize;
+        }
+        members
     }
 
-    /// `LANES` hits from place `i` on.
+    /// The hits of `LANES` paths.
     #[inline(always)]
-    pub(crate) fn load<D: Lanes>(&self, d: D, i: usize) -> surface::Hit<D> {
-        let at = i..i + D::LANES;
+    pub(crate) fn load<D: Lanes>(&self, d: D, members: &[usize; MAX_LANES]) -> surface::Hit<D> {
+        let [_, u, v, prim] = d.columns(|lane| {
+            let hit = &self.hits[members[lane]];
+            [hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.prim]
+        });
         surface::Hit {
-            u: d.real(&self.u[at.clone()]),
-            v: d.real(&self.v[at.clone()]),
-            prim: d.word(&self.prim[at]),
+            u: d.from_bits(u),
+            v: d.from_bits(v),
+            prim,
         }
     }
-}
-
-fn permute<T: Copy>(column: &mut Vec<T>, scratch: &mut Vec<T>, order: &[u32]) {
-    for (place, &from) in scratch.iter_mut().zip(order) {
-        *place = column[from as usize];
-    }
-    std::mem::swap(column, scratch);
 }

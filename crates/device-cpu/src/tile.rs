@@ -2,16 +2,16 @@
 
 use std::time::Instant;
 
-use residual_bvh::{BvhView, Lanes as BvhLanes, Ray, Watertight, any_hit, closest_hit};
+use residual_bvh::{Hit, Ray};
 use residual_render::domain::{Buffer, Buffers, Lanes};
 use residual_render::film::TileRect;
-use residual_render::sampler::SampleKey;
 use residual_render::scene::Scene;
-use residual_render::tracer::{PathTracer, Tracer};
+use residual_render::tracer::PathTracer;
 
-use crate::lanes::AnyBvh;
+use crate::camera_rays::CameraRays;
 use crate::shade::{Shade, shade_misses};
 use crate::stream::{PathStream, ShadowStream, SortedHits};
+use crate::traversal::{Alpha, Traversal};
 
 /// What is to be rendered.
 #[derive(Clone, Copy, Debug)]
@@ -83,12 +83,12 @@ impl std::ops::AddAssign for Counters {
 }
 
 /// A scene's data, ready to be rendered.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct SceneView<'a> {
     /// Its buffers.
     pub buffers: Buffers<'a>,
-    /// Its triangles.
-    pub bvh: AnyBvh<'a>,
+    /// What traces rays against its triangles.
+    pub traversal: &'a (dyn Traversal + Sync),
 }
 
 /// Renders tiles of one scene structure: interpreted, compiled in, or loaded.
@@ -108,148 +108,100 @@ impl Stopwatch {
     }
 }
 
-/// Renders a tile: every sample of the job is one wave of paths, one for each pixel.
+/// Paths under way at once. With their rays and hits they fit the second-level cache.
+const STREAM: usize = 4096;
+
+/// Renders a tile. Streams of paths are traced, sorted by program, shaded and thinned out; then camera rays fill the
+/// stream up again, so that lanes and packets stay full until the last samples of the job.
 #[inline(always)]
-pub fn render_tile<D, S, Sc, const N: usize>(
-    simd: S,
+pub fn render_tile<D, Sc>(
     d: D,
     scene: &Sc,
-    (buffers, bvh): (&Buffers<'_>, BvhView<'_, N>),
+    view: &SceneView<'_>,
     job: &TileJob,
     radiance: &mut [f32],
 ) -> Counters
 where
     D: Lanes,
-    S: BvhLanes<N>,
     Sc: Scene<D>,
 {
-    let area = job.rect().area();
     let tracer = PathTracer {
         sampler: scene.sampler(),
         size: job.image,
         roulette_from: job.roulette_from,
     };
-    let mut paths = PathStream::with_capacity(area, D::LANES);
-    let mut next = PathStream::with_capacity(area, D::LANES);
-    let mut shadows = ShadowStream::with_capacity(area, D::LANES);
-    let mut hits = SortedHits::with_capacity(area, D::LANES, scene.programs());
+    let covers = |ray: &Ray, hit: &Hit| scene.covers(ray, hit);
+    let alpha: Option<&Alpha<'_>> = if scene.has_alpha() {
+        Some(&covers)
+    } else {
+        None
+    };
+    let program_of = |prim: u32| view.buffers.word(Buffer::TrianglePrograms, prim);
+    let mut cameras = CameraRays::new(job);
+    let mut paths = PathStream::with_capacity(STREAM);
+    let mut next = PathStream::with_capacity(STREAM);
+    let mut shadows = ShadowStream::with_capacity(STREAM);
+    let mut hits = SortedHits::with_capacity(STREAM, scene.programs());
     let mut counters = Counters::default();
     let mut clock = Stopwatch(Instant::now());
     radiance.fill(0.0);
 
-    for (wave, radiance) in radiance.chunks_exact_mut(area * 3).enumerate() {
-        emit(
-            d,
-            scene,
-            &tracer,
-            job,
-            job.samples[0] + wave as u32,
-            &mut paths,
-        );
+    loop {
+        let carried = paths.len();
+        cameras.fill(d, scene, &tracer, &mut paths);
         clock.lap(&mut counters.emit);
-        for depth in 1..=job.max_depth {
-            if paths.len() == 0 {
-                break;
-            }
-            // Closest hits.
-            for i in 0..paths.len() {
-                let hit = closest_hit(simd, Watertight, bvh, &paths.ray(i), scene);
-                let program = hit
-                    .is_hit()
-                    .then(|| buffers.word(Buffer::TrianglePrograms, hit.prim));
-                hits.set(i, &hit, program);
-            }
-            if depth == 1 {
-                counters.camera_rays += paths.len() as u64;
-                clock.lap(&mut counters.trace_camera);
-            } else {
-                counters.bounce_rays += paths.len() as u64;
-                clock.lap(&mut counters.trace_bounce);
-            }
-            hits.sort(&mut paths);
-            clock.lap(&mut counters.sort);
-
-            // Shading, program by program.
-            next.clear();
-            shadows.clear();
-            shade_misses(d, &tracer, scene.lights(), &hits.misses(), &paths, radiance);
-            for program in 0..scene.programs() {
-                let range = hits.range(program);
-                if !range.is_empty() {
-                    scene.visit_material(
-                        program,
-                        Shade {
-                            d,
-                            tracer: &tracer,
-                            lights: scene.lights(),
-                            range,
-                            paths: &paths,
-                            hits: &hits,
-                            depth,
-                            last: depth == job.max_depth,
-                            next: &mut next,
-                            shadows: &mut shadows,
-                            radiance,
-                        },
-                    );
-                }
-            }
-            clock.lap(&mut counters.shade);
-
-            // Occlusion.
-            for i in 0..shadows.len() {
-                if !any_hit(simd, Watertight, bvh, &shadows.ray(i), scene) {
-                    shadows.add_to(i, radiance);
-                }
-            }
-            counters.shadow_rays += shadows.len() as u64;
-            clock.lap(&mut counters.trace_shadow);
-            std::mem::swap(&mut paths, &mut next);
+        let all = paths.len();
+        if all == 0 {
+            return counters;
         }
-        paths.clear();
-    }
-    counters
-}
 
-/// Camera rays of one sample of every pixel of the tile.
-#[inline(always)]
-fn emit<D: Lanes, Sc: Scene<D>>(
-    d: D,
-    scene: &Sc,
-    tracer: &PathTracer<Sc::Sampler>,
-    job: &TileJob,
-    sample: u32,
-    paths: &mut PathStream,
-) {
-    paths.clear();
-    let rect = job.rect();
-    let area = rect.area();
-    let mut columns = [0; 16];
-    let mut rows = [0; 16];
-    let mut ids = [0; 16];
-    for first in (0..area).step_by(D::LANES) {
-        for lane in 0..D::LANES {
-            let place = (first + lane).min(area - 1) as u32;
-            ids[lane] = place;
-            columns[lane] = rect.x + place % rect.width;
-            rows[lane] = rect.y + place / rect.width;
+        // Closest hits.
+        let (bounced, fresh) = paths.rays().split_at(carried);
+        view.traversal
+            .closest_hits(bounced, hits.answers(0..carried), alpha);
+        counters.bounce_rays += bounced.len() as u64;
+        clock.lap(&mut counters.trace_bounce);
+        view.traversal
+            .closest_hits(fresh, hits.answers(carried..all), alpha);
+        counters.camera_rays += fresh.len() as u64;
+        clock.lap(&mut counters.trace_camera);
+        hits.sort(all, program_of);
+        clock.lap(&mut counters.sort);
+
+        // Shading, program by program.
+        next.clear();
+        shadows.clear();
+        let misses = hits.range(scene.programs());
+        let lights = scene.lights();
+        shade_misses(d, &tracer, lights, (&paths, &hits), misses, radiance);
+        for program in 0..scene.programs() {
+            let range = hits.range(program);
+            if !range.is_empty() {
+                scene.visit_material(
+                    program,
+                    Shade {
+                        d,
+                        tracer: &tracer,
+                        lights,
+                        range,
+                        paths: &paths,
+                        hits: &hits,
+                        max_depth: job.max_depth,
+                        next: &mut next,
+                        shadows: &mut shadows,
+                        radiance,
+                    },
+                );
+            }
         }
-        let (x, y) = (d.word(&columns[..D::LANES]), d.word(&rows[..D::LANES]));
-        let key = SampleKey::new(d, x, y, d.uint(sample), d.uint(job.seed));
-        let path = tracer.on_emit(d, scene.camera(), [x, y], key);
-        let count = (area - first).min(D::LANES);
-        let all = ((1_u64 << count) - 1) as u32;
-        paths.push(d, all, &path, d.word(&ids[..D::LANES]));
-    }
-}
+        clock.lap(&mut counters.shade);
 
-/// A ray of the traversal library; `tmin` is 0: rays start beyond the error of their origin.
-#[inline(always)]
-pub(crate) fn ray(org: [f32; 3], dir: [f32; 3], tmax: f32) -> Ray {
-    Ray {
-        org,
-        tmin: 0.0,
-        dir,
-        tmax,
+        // Occlusion.
+        let (rays, occluded) = shadows.rays_and_answers();
+        view.traversal.any_hits(rays, occluded, alpha);
+        shadows.add_to(radiance);
+        counters.shadow_rays += shadows.len() as u64;
+        clock.lap(&mut counters.trace_shadow);
+        std::mem::swap(&mut paths, &mut next);
     }
 }

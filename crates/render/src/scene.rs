@@ -1,6 +1,6 @@
 //! What a device needs of a renderer: the seam along which specialisation replaces one by another.
 
-use residual_bvh::HitFilter;
+use residual_bvh::{Hit, Ray};
 
 use crate::camera::Camera;
 use crate::domain::Domain;
@@ -17,9 +17,7 @@ pub trait MaterialVisitor<D: Domain> {
 }
 
 /// The structure of a scene, as code. Emitted scenes are made of concrete types; `program::Interpreted` of boxes.
-///
-/// As a [`HitFilter`] it says which triangles are seen from which side, and what alpha lets through.
-pub trait Scene<D: Domain>: HitFilter + Sync {
+pub trait Scene<D: Domain>: Sync {
     /// The camera's kind.
     type Camera: Camera<D>;
     /// The sampler's kind.
@@ -35,6 +33,14 @@ pub trait Scene<D: Domain>: HitFilter + Sync {
     fn lights(&self) -> &Self::Lights;
     /// How many material programs there are.
     fn programs(&self) -> usize;
+    /// Whether any surface lets rays through: whether [`covers`](Scene::covers) is ever false.
+    fn has_alpha(&self) -> bool {
+        false
+    }
+    /// Whether the surface is there for this hit of this ray: a pure function of both.
+    fn covers(&self, _ray: &Ray, _hit: &Hit) -> bool {
+        true
+    }
     /// Runs `visitor` with program number `program`.
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output;
 }

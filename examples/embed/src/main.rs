@@ -4,8 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use residual_bvh::BuildQuality;
-use residual_device_cpu::lanes::OwnedBvh;
-use residual_device_cpu::{CpuDevice, RenderOptions, SceneView};
+use residual_device_cpu::{AnyBvh, CpuDevice, RenderOptions, SceneView};
 use residual_render::texture::srgb_code;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::plan;
@@ -31,10 +30,10 @@ fn main() -> Result<()> {
     let plan = plan(&scene, &options)?;
     plan.check_structure(Scene::STRUCTURE)?;
 
-    let bvh = OwnedBvh::build(&plan.data, Compiled::LANES, BuildQuality::Best);
+    let bvh = AnyBvh::build(&plan.data, Compiled::LANES, BuildQuality::Best);
     let view = SceneView {
         buffers: plan.data.buffers(),
-        bvh: bvh.view(),
+        traversal: &bvh,
     };
     let job = RenderOptions {
         size: options.size,

@@ -4,8 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use residual_bvh::BuildQuality;
-use residual_device_cpu::lanes::OwnedBvh;
-use residual_device_cpu::{CpuDevice, Interpreter, RenderOptions, SceneView, TileRenderer};
+use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, RenderOptions, SceneView, TileRenderer};
 use residual_render::film::Film;
 use residual_scenegen::emit::rust;
 use residual_scenegen::import::{ImportOptions, import};
@@ -32,10 +31,10 @@ fn planned(options: &PlanOptions) -> Plan {
 }
 
 fn render(plan: &Plan, renderer: &dyn TileRenderer, threads: usize) -> Film {
-    let bvh = OwnedBvh::build(&plan.data, Compiled::LANES, BuildQuality::Best);
+    let bvh = AnyBvh::build(&plan.data, Compiled::LANES, BuildQuality::Best);
     let view = SceneView {
         buffers: plan.data.buffers(),
-        bvh: bvh.view(),
+        traversal: &bvh,
     };
     let job = RenderOptions {
         size: [96, 80],

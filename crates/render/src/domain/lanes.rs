@@ -22,7 +22,14 @@ pub trait Lanes: Domain {
     fn store(self, value: Self::F, to: &mut [f32]);
     /// Stores `LANES` integers; `to` must be that long.
     fn store_word(self, value: Self::U, to: &mut [u32]);
+    /// The four columns of `LANES` rows of four words: what a record for each lane holds.
+    fn columns(self, row: impl Fn(usize) -> [u32; 4]) -> [Self::U; 4];
+    /// The rows of four columns; only the first `LANES` mean anything.
+    fn rows(self, columns: [Self::U; 4]) -> [[u32; 4]; MAX_LANES];
 }
+
+/// The most lanes that a domain has.
+pub const MAX_LANES: usize = 16;
 
 impl Lanes for Scalar<'_> {
     const LANES: usize = 1;
@@ -45,6 +52,15 @@ impl Lanes for Scalar<'_> {
     #[inline(always)]
     fn store_word(self, value: Uint, to: &mut [u32]) {
         to[0] = value.0;
+    }
+    #[inline(always)]
+    fn columns(self, row: impl Fn(usize) -> [u32; 4]) -> [Uint; 4] {
+        let [x, y, z, w] = row(0);
+        [Uint(x), Uint(y), Uint(z), Uint(w)]
+    }
+    #[inline(always)]
+    fn rows(self, [x, y, z, w]: [Uint; 4]) -> [[u32; 4]; MAX_LANES] {
+        [[x.0, y.0, z.0, w.0]; MAX_LANES]
     }
 }
 
@@ -208,6 +224,45 @@ macro_rules! lanes {
             #[inline(always)]
             fn store_word(self, value: Self::U, to: &mut [u32]) {
                 value.store_slice(to);
+            }
+            #[inline(always)]
+            fn columns(self, row: impl Fn(usize) -> [u32; 4]) -> [Self::U; 4] {
+                const ROWS: usize = $lanes / 4;
+                let quarter = |first: usize| {
+                    let mut words = [0; $lanes];
+                    for k in 0..ROWS {
+                        words[4 * k..4 * k + 4].copy_from_slice(&row(first * ROWS + k));
+                    }
+                    $word::load_array(self.simd, words)
+                };
+                // Even columns, then every second of them, in the order of the rows.
+                let (a, b) = (quarter(0), quarter(1));
+                let (c, d) = (quarter(2), quarter(3));
+                let (xz_low, yw_low) = (a.unzip_low(b), a.unzip_high(b));
+                let (xz_high, yw_high) = (c.unzip_low(d), c.unzip_high(d));
+                [
+                    xz_low.unzip_low(xz_high),
+                    yw_low.unzip_low(yw_high),
+                    xz_low.unzip_high(xz_high),
+                    yw_low.unzip_high(yw_high),
+                ]
+            }
+            #[inline(always)]
+            fn rows(self, [x, y, z, w]: [Self::U; 4]) -> [[u32; 4]; MAX_LANES] {
+                let (xz_low, xz_high) = (x.zip_low(z), x.zip_high(z));
+                let (yw_low, yw_high) = (y.zip_low(w), y.zip_high(w));
+                let quarters = [
+                    xz_low.zip_low(yw_low),
+                    xz_low.zip_high(yw_low),
+                    xz_high.zip_low(yw_high),
+                    xz_high.zip_high(yw_high),
+                ];
+                let mut rows = [[0; 4]; MAX_LANES];
+                let words = rows.as_flattened_mut();
+                for (quarter, words) in quarters.iter().zip(words.chunks_exact_mut($lanes)) {
+                    quarter.store_slice(words);
+                }
+                rows
             }
         }
     };

@@ -1,6 +1,6 @@
 //! The interpreted renderer: a scene's structure as boxed nodes. It starts at once and needs no compiler.
 
-use residual_bvh::{Culling, Hit, HitFilter, Ray};
+use residual_bvh::{Hit, Ray};
 
 use super::boxed::{self, BoxedAlpha, BoxedMaterial};
 use super::{LightNode, Structure};
@@ -54,28 +54,6 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
     }
 }
 
-impl<D: Domain> HitFilter for Interpreted<'_, D> {
-    // What a scene does without is known only at run time here: the price of interpretation.
-    const CULLING: Culling = Culling::PerTriangle;
-    const REJECTS: bool = true;
-
-    #[inline(always)]
-    fn accept(&self, ray: &Ray, hit: &Hit) -> bool {
-        let program = self.buffers.word(Buffer::TrianglePrograms, hit.prim) as usize;
-        match &self.alphas[program] {
-            Some(alpha) => is_there(
-                self.buffers,
-                alpha.attributes,
-                &alpha.alpha,
-                &alpha.test,
-                ray,
-                hit,
-            ),
-            None => true,
-        }
-    }
-}
-
 impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
     type Camera = AnyCamera;
     type Sampler = AnySampler;
@@ -92,6 +70,22 @@ impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
     }
     fn programs(&self) -> usize {
         self.materials.len()
+    }
+    fn has_alpha(&self) -> bool {
+        self.alphas.iter().any(Option::is_some)
+    }
+    fn covers(&self, ray: &Ray, hit: &Hit) -> bool {
+        let program = self.buffers.word(Buffer::TrianglePrograms, hit.prim) as usize;
+        self.alphas[program].as_ref().is_none_or(|alpha| {
+            is_there(
+                self.buffers,
+                alpha.attributes,
+                &alpha.alpha,
+                &alpha.test,
+                ray,
+                hit,
+            )
+        })
     }
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         visitor.visit(&self.materials[program])

@@ -3,7 +3,7 @@
 use std::fmt::{self, Write as _};
 
 use residual_render::alpha::AlphaTest;
-use residual_render::program::{AlphaNode, BsdfNode, Culling, LightNode, Program, SourceNode};
+use residual_render::program::{AlphaNode, BsdfNode, LightNode, Program, SourceNode};
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 
@@ -44,7 +44,6 @@ fn write(out: &mut String, plan: &Plan, lanes: &str) -> fmt::Result {
         fingerprint(structure)
     )?;
     scene(out, plan)?;
-    hit_filter(out, structure.culling, &structure.programs)?;
     for (number, program) in structure.programs.iter().enumerate() {
         material(out, number, program, &plan.materials[number])?;
     }
@@ -56,7 +55,7 @@ fn write(out: &mut String, plan: &Plan, lanes: &str) -> fmt::Result {
 
 const HEADER: &str = "
 #[allow(clippy::wildcard_imports, unused_imports, reason = \"one list serves all scenes\")]
-use residual_device_cpu::generated::{Culling, Hit, HitFilter, Ray, render};
+use residual_device_cpu::generated::{Hit, Ray, render};
 #[allow(clippy::wildcard_imports, unused_imports, reason = \"one list serves all scenes\")]
 use render::{
     alpha::*, bsdf::*, camera::*, domain::*, light::*, material::*, math::*, sampler::*, scene::MaterialVisitor,
@@ -120,6 +119,7 @@ fn scene(out: &mut String, plan: &Plan) -> fmt::Result {
         out,
         "    fn programs(&self) -> usize {{\n        {programs}\n    }}"
     )?;
+    alpha(out, &structure.programs)?;
     writeln!(out, "    #[inline(always)]")?;
     let visitor = if programs == 0 { "_" } else { "visitor" };
     writeln!(
@@ -198,20 +198,17 @@ fn attribute_set(attributes: Attributes) -> String {
     }
 }
 
-fn hit_filter(out: &mut String, culling: Culling, programs: &[Program]) -> fmt::Result {
-    let rejects = programs.iter().any(|program| program.alpha.is_some());
-    writeln!(out, "\nimpl HitFilter for Scene<'_> {{")?;
-    writeln!(out, "    const CULLING: Culling = Culling::{culling:?};")?;
-    writeln!(out, "    const REJECTS: bool = {rejects};\n")?;
-    writeln!(out, "    #[inline(always)]")?;
-    if !rejects {
-        writeln!(
-            out,
-            "    fn accept(&self, _: &Ray, _: &Hit) -> bool {{\n        true\n    }}\n}}"
-        )?;
+/// The methods of the scene about surfaces that let rays through; none if no surface does.
+fn alpha(out: &mut String, programs: &[Program]) -> fmt::Result {
+    if programs.iter().all(|program| program.alpha.is_none()) {
         return Ok(());
     }
-    writeln!(out, "    fn accept(&self, ray: &Ray, hit: &Hit) -> bool {{")?;
+    writeln!(
+        out,
+        "    #[inline(always)]\n    fn has_alpha(&self) -> bool {{\n        true\n    }}"
+    )?;
+    writeln!(out, "    #[inline(always)]")?;
+    writeln!(out, "    fn covers(&self, ray: &Ray, hit: &Hit) -> bool {{")?;
     writeln!(
         out,
         "        match self.buffers.word(Buffer::TrianglePrograms, hit.prim) {{"
@@ -221,7 +218,7 @@ fn hit_filter(out: &mut String, culling: Culling, programs: &[Program]) -> fmt::
             alpha_test(out, number, alpha)?;
         }
     }
-    writeln!(out, "            _ => true,\n        }}\n    }}\n}}")
+    writeln!(out, "            _ => true,\n        }}\n    }}")
 }
 
 fn alpha_test(out: &mut String, number: usize, node: &AlphaNode) -> fmt::Result {

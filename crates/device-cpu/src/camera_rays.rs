@@ -1,0 +1,72 @@
+//! Where a tile's paths begin: the samples of its pixels, one after the other, in blocks of 4×4 pixels, whose rays stay
+//! together.
+
+use residual_render::domain::{Lanes, MAX_LANES};
+use residual_render::sampler::SampleKey;
+use residual_render::scene::Scene;
+use residual_render::tracer::{PathTracer, Tracer};
+
+use crate::stream::{PathStream, Place};
+use crate::tile::TileJob;
+
+/// Pixels along the side of a block.
+const SIDE: usize = 4;
+
+/// The camera rays of a job that are yet to be made.
+pub(crate) struct CameraRays<'j> {
+    job: &'j TileJob,
+    next: usize,
+}
+
+impl<'j> CameraRays<'j> {
+    pub(crate) fn new(job: &'j TileJob) -> Self {
+        Self { job, next: 0 }
+    }
+
+    /// Makes rays until the stream is full or none are left.
+    #[inline(always)]
+    pub(crate) fn fill<D: Lanes, Sc: Scene<D>>(
+        &mut self,
+        d: D,
+        scene: &Sc,
+        tracer: &PathTracer<Sc::Sampler>,
+        paths: &mut PathStream,
+    ) {
+        let job = self.job;
+        let rect = job.rect();
+        let (width, height) = (rect.width as usize, rect.height as usize);
+        let blocks = (width.div_ceil(SIDE), height.div_ceil(SIDE));
+        let places = blocks.0 * blocks.1 * SIDE * SIDE;
+        let end = places * job.samples[1] as usize;
+        let mut columns = [0; MAX_LANES];
+        let mut rows = [0; MAX_LANES];
+        let mut pixels = [0; MAX_LANES];
+        while self.next < end && paths.has_room() {
+            // Lane counts divide the pixels of a block, so all lanes have the same sample.
+            let (sample, first) = (self.next / places, self.next % places);
+            let mut inside = 0;
+            for lane in 0..D::LANES {
+                let (block, within) = (
+                    (first + lane) / (SIDE * SIDE),
+                    (first + lane) % (SIDE * SIDE),
+                );
+                let column = block % blocks.0 * SIDE + within % SIDE;
+                let row = block / blocks.0 * SIDE + within / SIDE;
+                inside |= u32::from(column < width && row < height) << lane;
+                columns[lane] = rect.x + column as u32;
+                rows[lane] = rect.y + row as u32;
+                pixels[lane] = ((sample * height + row) * width + column) as u32;
+            }
+            let pixel = [&columns, &rows].map(|places| d.word(&places[..D::LANES]));
+            let sample = d.uint(job.samples[0] + sample as u32);
+            let key = SampleKey::new(d, pixel[0], pixel[1], sample, d.uint(job.seed));
+            let path = tracer.on_emit(d, scene.camera(), pixel, key);
+            let place = Place {
+                pixel: d.word(&pixels[..D::LANES]),
+                depth: d.uint(1),
+            };
+            paths.push(d, inside, &path, place);
+            self.next += D::LANES;
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! What traces a device's rays. Renderers know no hierarchy: streams of rays go in, hits come out.
+//!
+//! So the kernels are compiled once, not with every scene, and a hierarchy is as wide as suits the machine, not as wide
+//! as the shading. It is also where another library's traversal is put in.
+
+use fearless_simd::{Level, dispatch};
+use residual_bvh::{
+    AllHits, BuildQuality, Bvh, Culling, Hit, HitFilter, Hybrid, Kernel, MarkedHits, Ray,
+    Watertight, build,
+};
+use residual_render::scene_data::SceneData;
+
+use crate::lanes::LaneCount;
+
+/// Says whether a surface is there where a ray meets it (alpha). A pure function of both.
+pub type Alpha<'a> = dyn Fn(&Ray, &Hit) -> bool + 'a;
+
+/// Traces streams of rays against a scene's triangles.
+pub trait Traversal {
+    /// The nearest hit of each ray; of several at the same distance, the one with the smallest triangle number.
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&Alpha<'_>>);
+
+    /// Whether each ray hits anything.
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>);
+}
+
+/// A hierarchy of the width that suits the machine.
+#[derive(Debug)]
+pub struct AnyBvh {
+    tree: Tree,
+    /// Some triangles are seen from their front only.
+    sided: bool,
+}
+
+#[derive(Debug)]
+enum Tree {
+    Four(Bvh<4>),
+    Eight(Bvh<8>),
+    Sixteen(Bvh<16>),
+}
+
+impl AnyBvh {
+    /// Builds the hierarchy over a scene's triangles, as wide as these lanes, but at least four.
+    pub fn build(data: &SceneData, width: LaneCount, quality: BuildQuality) -> Self {
+        let (positions, triangles) = (data.positions(), data.triangles());
+        let sided = data.single_sided.contains(&true);
+        let sides = sided.then_some(data.single_sided.as_slice());
+        let tree = match width {
+            LaneCount::One | LaneCount::Four => {
+                Tree::Four(build(&positions, &triangles, sides, quality))
+            }
+            LaneCount::Eight => Tree::Eight(build(&positions, &triangles, sides, quality)),
+            LaneCount::Sixteen => Tree::Sixteen(build(&positions, &triangles, sides, quality)),
+        };
+        Self { tree, sided }
+    }
+
+    /// Bytes of its nodes and triangles.
+    pub fn memory_bytes(&self) -> usize {
+        match &self.tree {
+            Tree::Four(bvh) => bvh.memory_bytes(),
+            Tree::Eight(bvh) => bvh.memory_bytes(),
+            Tree::Sixteen(bvh) => bvh.memory_bytes(),
+        }
+    }
+}
+
+/// What alpha lets through.
+struct Covered<'a>(&'a Alpha<'a>);
+
+impl HitFilter for Covered<'_> {
+    const CULLING: Culling = Culling::PerTriangle;
+    const REJECTS: bool = true;
+
+    #[inline(always)]
+    fn accept(&self, ray: &Ray, hit: &Hit) -> bool {
+        (self.0)(ray, hit)
+    }
+}
+
+/// Calls a query of packets as wide as the hierarchy with the filter that the scene calls for. Packets fall back to
+/// single rays where neighbours disagree, so they serve all streams.
+macro_rules! trace {
+    (@ $simd:ident, $bvh:ident, $width:literal, $sided:expr, $alpha:ident, $query:ident($rays:ident, $answers:ident)) => {{
+        let (kernel, bvh) = (Hybrid::<$width>, $bvh.view());
+        match $alpha {
+            Some(alpha) => kernel.$query($simd, Watertight, bvh, $rays, $answers, &Covered(alpha)),
+            None if $sided => kernel.$query($simd, Watertight, bvh, $rays, $answers, &MarkedHits),
+            None => kernel.$query($simd, Watertight, bvh, $rays, $answers, &AllHits),
+        }
+    }};
+    ($self:ident, $alpha:ident, $query:ident($rays:ident, $answers:ident)) => {
+        dispatch!(Level::new(), simd => match &$self.tree {
+            Tree::Four(bvh) => trace!(@ simd, bvh, 4, $self.sided, $alpha, $query($rays, $answers)),
+            Tree::Eight(bvh) => trace!(@ simd, bvh, 8, $self.sided, $alpha, $query($rays, $answers)),
+            Tree::Sixteen(bvh) => trace!(@ simd, bvh, 16, $self.sided, $alpha, $query($rays, $answers)),
+        })
+    };
+}
+
+impl Traversal for AnyBvh {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&Alpha<'_>>) {
+        trace!(self, alpha, closest_hits(rays, hits));
+    }
+
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>) {
+        trace!(self, alpha, any_hits(rays, occluded));
+    }
+}
