@@ -1,4 +1,4 @@
-//! Benchmarks of ray queries: our kernels beside Embree and obvhs, on the same rays.
+//! Benchmarks of ray queries, our kernels beside Embree and obvhs on the same rays, and of whole renders ([`render`]).
 //!
 //! ```text
 //! scene file ─ scene ─ rays ─▶ one RaySet per kind ─┐
@@ -15,6 +15,7 @@ pub mod measure;
 pub mod ours;
 pub mod peers;
 pub mod rays;
+pub mod render;
 pub mod report;
 pub mod run;
 pub mod scene;

@@ -1,5 +1,6 @@
 //! From a description to a film.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use residual_bvh::BuildQuality;
@@ -110,6 +111,8 @@ impl<'a> Prepared<'a> {
             buffers: self.plan.data.buffers(),
             traversal: &self.bvh,
         };
-        device.render(|| renderer, &view, &options, |_| {}).0
+        device
+            .render(|| renderer, &view, &options, |_| ControlFlow::Continue(()))
+            .0
     }
 }

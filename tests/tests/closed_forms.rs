@@ -1,5 +1,7 @@
 //! Whole renders whose radiance is known (hard case L-12): the interpreter on the CPU device, hand-made scenes.
 
+use std::ops::ControlFlow;
+
 use residual_bvh::{BuildQuality, Culling};
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView};
 use residual_render::camera::AnyCamera;
@@ -119,7 +121,12 @@ fn render(
         max_depth,
         seed: 1,
     };
-    let (film, _) = device.render(|| &interpreter, &view, &options, |_| ());
+    let (film, _) = device.render(
+        || &interpreter,
+        &view,
+        &options,
+        |_| ControlFlow::Continue(()),
+    );
     assert_eq!(
         (film.samples(), film.invalid_samples()),
         (u64::from(samples), 0)

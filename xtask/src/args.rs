@@ -139,6 +139,36 @@ pub(crate) struct EmitArgs {
 pub(crate) enum BenchCommand {
     /// Ray queries, beside Embree's (set RESIDUAL_EMBREE_LIB) and obvhs'
     Traversal(TraversalArgs),
+    /// Whole renders: specialized and interpreted, with our traversal and with Embree's (set RESIDUAL_EMBREE_LIB)
+    Render(RenderBenchArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct RenderBenchArgs {
+    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scene: Vec<PathBuf>,
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Measured rounds
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) rounds: u32,
+    /// Samples per pixel in a round
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) spp: u32,
+    /// Width and height of the image
+    #[arg(long, value_name = "WxH", default_value = "512x512")]
+    pub(crate) size: Size,
+    /// Most vertices of a path
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) max_depth: u32,
+    /// Threads; 0 is one for each processor
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) threads: usize,
+    /// Paths shaded at once, with commas between them [default: what suits the machine]
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    pub(crate) lanes: Vec<LaneCount>,
 }
 
 #[derive(Args)]

@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: ray queries beside Embree's and obvhs'.
+//! `cargo xtask bench traversal`: ray queries beside Embree's and obvhs'.
 
 use std::path::{Path, PathBuf};
 
@@ -10,9 +10,16 @@ use residual_benches::report::{build_table, trace_table};
 use residual_benches::run::{Options, SceneReport, traversal};
 
 use crate::args::{BenchCommand, IsaArg, KernelArg, PrecisionArg, RaysArg, TraversalArgs};
+use crate::bench_render;
 
 pub(crate) fn run(command: &BenchCommand) -> Result<()> {
-    let BenchCommand::Traversal(args) = command;
+    match command {
+        BenchCommand::Traversal(args) => run_traversal(args),
+        BenchCommand::Render(args) => bench_render::run(args),
+    }
+}
+
+fn run_traversal(args: &TraversalArgs) -> Result<()> {
     traversal(&options(args)?, |report| {
         if args.json {
             print_json(&report);
@@ -74,7 +81,7 @@ fn rays(arg: &RaysArg) -> RayKind {
 }
 
 /// The glTF files that come with the repository.
-fn own_scenes() -> Result<Vec<PathBuf>> {
+pub(crate) fn own_scenes() -> Result<Vec<PathBuf>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
     let entries = std::fs::read_dir(&folder).with_context(|| folder.display().to_string())?;
     let mut scenes = entries

@@ -4,6 +4,7 @@
 
 mod args;
 mod bench;
+mod bench_render;
 pub mod compile;
 mod emit;
 mod inspect;

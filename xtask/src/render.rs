@@ -1,8 +1,9 @@
 //! `cargo xtask render`.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
@@ -43,6 +44,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let compiled = OnceLock::new();
     let compiled_from = AtomicU32::new(u32::MAX);
     let samples_done = AtomicU32::new(0);
+    let stop = stop_on_interrupt()?;
     let mut bvh_time = Duration::ZERO;
     let mut done = None;
     let mut render_cpu = None;
@@ -89,6 +91,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
                 None => bar.set_position(progress.elapsed.as_millis() as u64),
             }
             bar.set_message(format!("{} spp", progress.samples));
+            if stop.load(Ordering::Relaxed) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
         let cpu_before = cpu_seconds();
         done = Some(device.render(choose, &view, &options, show));
@@ -158,6 +165,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             args,
             statistics.compiled_from,
         );
+        if stop.load(Ordering::Relaxed) {
+            eprintln!("stopped; the image is what there was by then");
+        }
     }
     match args.stats {
         Some(StatsArg::Json) => println!("{}", statistics.json()),
@@ -167,8 +177,22 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     Ok(())
 }
 
+/// Set by Ctrl-C, after which the pass under way is finished and the image is written. A second Ctrl-C ends the program.
+fn stop_on_interrupt() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        eprintln!("\nstopping after this pass; Ctrl-C again to lose the image");
+    })
+    .context("listening for Ctrl-C")?;
+    Ok(stop)
+}
+
 /// The best hierarchy takes 6 s for a million triangles and saves a tenth of the tracing; the next takes less than 1 s.
-fn quality(triangles: usize) -> BuildQuality {
+pub(crate) fn quality(triangles: usize) -> BuildQuality {
     match triangles {
         0..=150_000 => BuildQuality::Best,
         150_001..=10_000_000 => BuildQuality::High,

@@ -94,6 +94,7 @@ impl Statistics<'_> {
                 "trace_shadow": c.trace_shadow,
                 "sort": c.sort,
                 "shade": c.shade,
+                "film": c.film,
             },
             "compiled_from_spp": self.compiled_from,
             "msamples_per_s": self.samples() / render / 1e6,
@@ -121,6 +122,7 @@ impl Statistics<'_> {
             ("shadow rays", c.trace_shadow),
             ("sorting", c.sort),
             ("shading", c.shade),
+            ("film", c.film),
         ];
         let busy: f64 = stages.iter().map(|(_, seconds)| seconds).sum();
         let [r, g, b] = self.film.mean();

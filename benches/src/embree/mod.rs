@@ -1,9 +1,10 @@
 //! Embree 4, loaded at run time: the yardstick, never a dependency.
 //!
-//! `ffi` declares what we call, `trace` makes contenders of it. I. Wald et al., "Embree: A Kernel Framework for Efficient
+//! `ffi` declares what we call, `trace` makes contenders of it, `renderer` puts it into our renderer. I. Wald et al., "Embree: A Kernel Framework for Efficient
 //! CPU Ray Tracing", TOG 33(4), 2014.
 
 mod ffi;
+mod renderer;
 mod trace;
 
 use std::ffi::{CString, c_void};
@@ -18,6 +19,7 @@ use crate::measure::process_time;
 use crate::scene::Mesh;
 
 use ffi::{Api, Handle};
+pub use renderer::EmbreeTraversal;
 pub use trace::{EmbreeContender, Mode};
 
 /// Names the library's file.

@@ -103,7 +103,16 @@ impl Contender for EmbreeContender {
 
 /// Lanes that take part, -1 or 0.
 #[repr(C, align(64))]
-struct Valid([c_int; 16]);
+pub(super) struct Valid(pub(super) [c_int; 16]);
+
+impl Valid {
+    /// The first lanes.
+    pub(super) fn first(count: usize) -> Valid {
+        Valid(std::array::from_fn(
+            |lane| if lane < count { -1 } else { 0 },
+        ))
+    }
+}
 
 struct Packets<'a, const N: usize> {
     scene: &'a EmbreeScene,
@@ -128,7 +137,8 @@ impl<'a, const N: usize> Packets<'a, N> {
     }
 }
 
-fn empty<const N: usize>() -> RayHits<N> {
+/// A packet that has hit nothing yet.
+pub(super) fn empty<const N: usize>() -> RayHits<N> {
     RayHits {
         rays: Rays {
             org: [[0.0; N]; 3],
@@ -151,40 +161,45 @@ fn empty<const N: usize>() -> RayHits<N> {
     }
 }
 
-impl<const N: usize> Prepared for Packets<'_, N> {
-    fn load(&mut self, rays: &[Ray]) {
-        self.packets.clear();
-        self.packets.resize(rays.len().div_ceil(N), empty());
-        let filled = (rays.len() + N - 1) % N + 1;
-        self.last = Valid(std::array::from_fn(
-            |lane| if lane < filled { -1 } else { 0 },
-        ));
-        for (packet, rays) in self.packets.iter_mut().zip(rays.chunks(N)) {
-            for (lane, ray) in rays.iter().enumerate() {
-                for axis in 0..3 {
-                    packet.rays.org[axis][lane] = ray.org[axis];
-                    packet.rays.dir[axis][lane] = ray.dir[axis];
-                }
-                packet.rays.tnear[lane] = ray.tmin;
-                packet.rays.tfar[lane] = ray.tmax;
-            }
+/// Puts at most `N` rays into a packet.
+pub(super) fn fill<const N: usize>(packet: &mut RayHits<N>, rays: &[Ray]) {
+    for (lane, ray) in rays.iter().enumerate() {
+        for axis in 0..3 {
+            packet.rays.org[axis][lane] = ray.org[axis];
+            packet.rays.dir[axis][lane] = ray.dir[axis];
         }
+        packet.rays.tnear[lane] = ray.tmin;
+        packet.rays.tfar[lane] = ray.tmax;
     }
+}
 
-    fn run(&mut self) {
-        let _flush = FlushToZero::new();
-        let mut arguments = Arguments {
-            flags: if self.coherent {
-                RAY_QUERY_FLAG_COHERENT
-            } else {
-                0
-            },
+impl Arguments {
+    /// The defaults.
+    pub(super) fn new(coherent: bool) -> Arguments {
+        Arguments {
+            flags: if coherent { RAY_QUERY_FLAG_COHERENT } else { 0 },
             feature_mask: FEATURE_FLAG_ALL,
             context: null_mut(),
             filter: null_mut(),
             callback: null_mut(),
             min_width_distance_factor: 0.0,
-        };
+        }
+    }
+}
+
+impl<const N: usize> Prepared for Packets<'_, N> {
+    fn load(&mut self, rays: &[Ray]) {
+        self.packets.clear();
+        self.packets.resize(rays.len().div_ceil(N), empty());
+        self.last = Valid::first((rays.len() + N - 1) % N + 1);
+        for (packet, rays) in self.packets.iter_mut().zip(rays.chunks(N)) {
+            fill(packet, rays);
+        }
+    }
+
+    fn run(&mut self) {
+        let _flush = FlushToZero::new();
+        let mut arguments = Arguments::new(self.coherent);
         let all = Valid([-1; 16]);
         let scene: Handle = self.scene.scene;
         let last_index = self.packets.len().wrapping_sub(1);
@@ -222,7 +237,7 @@ impl<const N: usize> Prepared for Packets<'_, N> {
 }
 
 /// Denormals are zero, as Embree advises, until this is dropped.
-struct FlushToZero {
+pub(super) struct FlushToZero {
     #[cfg(target_arch = "x86_64")]
     before: u32,
 }
@@ -231,7 +246,7 @@ struct FlushToZero {
 impl FlushToZero {
     const FTZ_AND_DAZ: u32 = 0x8040;
 
-    fn new() -> FlushToZero {
+    pub(super) fn new() -> FlushToZero {
         let mut before = 0u32;
         // SAFETY: stores the control register to a live variable.
         unsafe { std::arch::asm!("stmxcsr [{}]", in(reg) &mut before, options(nostack)) };
@@ -255,7 +270,7 @@ fn set_control(value: u32) {
 
 #[cfg(not(target_arch = "x86_64"))]
 impl FlushToZero {
-    fn new() -> FlushToZero {
+    pub(super) fn new() -> FlushToZero {
         FlushToZero {}
     }
 }

@@ -1,5 +1,6 @@
 //! Scheduling: passes of samples over all tiles, tiles spread over threads.
 
+use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -10,7 +11,8 @@ use crate::tile::{Counters, SceneView, TileJob, TileRenderer};
 
 /// Pixels along the side of a tile. A wave of 4,096 paths with all its columns fits the second-level cache.
 const TILE_SIZE: u32 = 64;
-/// Passes grow until one takes about this long, so that progress is shown and time limits are kept.
+/// Passes grow until one takes about this long, so that progress is shown, time limits are kept and a wish to stop is
+/// heard.
 const PASS_TIME: Duration = Duration::from_millis(250);
 /// Most samples in one pass.
 const MAX_PASS: u32 = 16;
@@ -81,13 +83,14 @@ impl CpuDevice {
     }
 
     /// Renders until the options say stop. Between passes `renderer` is asked anew which renderer to use, so that a
-    /// compiled one can take over from the interpreter; all give the same bits.
+    /// compiled one can take over from the interpreter; all give the same bits. `progress`, called after each pass, may
+    /// break: the film is then what there is so far.
     pub fn render<'r>(
         &self,
         mut renderer: impl FnMut() -> &'r dyn TileRenderer,
         scene: &SceneView<'_>,
         options: &RenderOptions,
-        mut progress: impl FnMut(Progress),
+        mut progress: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> (Film, RenderReport) {
         let [width, height] = options.size;
         let mut film = Film::new(width, height, self.tile_size);
@@ -118,16 +121,21 @@ impl CpuDevice {
                         seed: options.seed,
                     };
                     let mut radiance = vec![0.0; rect.area() * 3 * count as usize];
-                    let did = renderer.render_tile(scene, &job, &mut radiance);
+                    let mut did = renderer.render_tile(scene, &job, &mut radiance);
+                    let film_start = Instant::now();
                     tile.add(&radiance);
+                    did.film = film_start.elapsed().as_secs_f64();
                     *counters.lock().expect("no tile panicked") += did;
                 });
             });
             done += count;
-            progress(Progress {
+            let so_far = Progress {
                 samples: done,
                 elapsed: start.elapsed(),
-            });
+            };
+            if progress(so_far).is_break() {
+                break;
+            }
             if pass_start.elapsed() < PASS_TIME {
                 pass = (pass * 2).min(MAX_PASS);
             }

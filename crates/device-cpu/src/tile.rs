@@ -60,12 +60,29 @@ pub struct Counters {
     pub trace_camera: f64,
     /// Thread seconds: closest hits of continued paths.
     pub trace_bounce: f64,
-    /// Thread seconds: occlusion.
+    /// Thread seconds: occlusion, and adding what is not occluded.
     pub trace_shadow: f64,
     /// Thread seconds: sorting by program.
     pub sort: f64,
-    /// Thread seconds: shading.
+    /// Thread seconds: shading, and writing down the paths and shadow rays that go on, which compacts them.
     pub shade: f64,
+    /// Thread seconds: adding samples to the film.
+    pub film: f64,
+}
+
+impl Counters {
+    /// The stages with their thread seconds (thesis, Figure 3.3).
+    pub fn stages(&self) -> [(&'static str, f64); 7] {
+        [
+            ("emit", self.emit),
+            ("trace_camera", self.trace_camera),
+            ("trace_bounce", self.trace_bounce),
+            ("trace_shadow", self.trace_shadow),
+            ("sort", self.sort),
+            ("shade", self.shade),
+            ("film", self.film),
+        ]
+    }
 }
 
 impl std::ops::AddAssign for Counters {
@@ -79,6 +96,7 @@ impl std::ops::AddAssign for Counters {
         self.trace_shadow += o.trace_shadow;
         self.sort += o.sort;
         self.shade += o.shade;
+        self.film += o.film;
     }
 }
 

@@ -1,5 +1,6 @@
 //! Renders the Cornell box with a renderer that was compiled in: `residual-example-embed [IMAGE.png]`.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -43,7 +44,7 @@ fn main() -> Result<()> {
         seed: 0,
     };
     let device = CpuDevice::new(0)?;
-    let (film, report) = device.render(|| &Compiled, &view, &job, |_| {});
+    let (film, report) = device.render(|| &Compiled, &view, &job, |_| ControlFlow::Continue(()));
 
     let pixels = film
         .image()

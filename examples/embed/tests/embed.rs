@@ -1,5 +1,6 @@
 //! The compiled-in renderer is the interpreter's equal, generated the same every time, and refuses foreign data.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
 
@@ -45,7 +46,7 @@ fn render(plan: &Plan, renderer: &dyn TileRenderer, threads: usize) -> Film {
     };
     CpuDevice::new(threads)
         .unwrap()
-        .render(|| renderer, &view, &job, |_| {})
+        .render(|| renderer, &view, &job, |_| ControlFlow::Continue(()))
         .0
 }
 
