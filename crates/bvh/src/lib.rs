@@ -182,6 +182,7 @@ mod serial;
 mod simd;
 mod single;
 mod slab;
+mod sorting_network;
 mod spatial;
 mod stack;
 mod stream;
