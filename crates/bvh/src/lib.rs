@@ -178,6 +178,7 @@ mod ray;
 mod refit;
 mod reinsert;
 mod sbvh;
+mod scalar;
 mod serial;
 mod simd;
 mod single;
@@ -204,6 +205,7 @@ pub use instances::{
 pub use precision::{Exact, Fast, Precision, Watertight};
 pub use quantized::{QuantizedBvh, QuantizedNode};
 pub use ray::{Hit, Ray};
+pub use scalar::Scalar;
 pub use serial::LoadError;
 pub use simd::Lanes;
 pub use single::{any_hit, closest_hit};
