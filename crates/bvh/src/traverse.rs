@@ -20,7 +20,21 @@ pub(crate) trait Visitor {
     fn leaf(&mut self, leaf: Child) -> ControlFlow<()>;
 }
 
-/// Visits the leaves below `start` whose boxes `slab` touches.
+/// How rays are tested against the boxes of a node.
+pub(crate) trait BoxTest<S: Lanes<N>, const N: usize> {
+    /// The children whose boxes are touched before `tmax`, as bits, and where they are entered.
+    fn touched_children(&self, simd: S, node: &impl Boxes<N>, tmax: f32) -> (u32, S::Float);
+}
+
+/// All at once.
+impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for Slab<S, N> {
+    #[inline(always)]
+    fn touched_children(&self, simd: S, node: &impl Boxes<N>, tmax: f32) -> (u32, S::Float) {
+        Slab::touched_children(self, simd, node, tmax)
+    }
+}
+
+/// Visits the leaves below `start` whose boxes `test` touches.
 ///
 /// # Safety
 /// The nodes must be sound, as [`crate::BvhView::new`] checks, and `start` one of their children
@@ -30,7 +44,7 @@ pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, V: Visitor>(
     simd: S,
     nodes: &[impl Boxes<N>],
     start: Child,
-    slab: &Slab<S, N>,
+    test: &impl BoxTest<S, N>,
     visitor: &mut V,
 ) {
     let mut stack = Stack::<N>::new();
@@ -39,7 +53,7 @@ pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, V: Visitor>(
         while !current.is_leaf() {
             // SAFETY: children that are not leaves index the nodes, by this function's contract.
             let node = unsafe { nodes.get_unchecked(current.0 as usize) };
-            let (touched, entry) = slab.touched_children(simd, node, visitor.tmax());
+            let (touched, entry) = test.touched_children(simd, node, visitor.tmax());
             // SAFETY: `touched` has bits in 0..N only. The stack has room for N - 1 entries for
             // each level of the tree, and each of the at most MAX_DEPTH nodes on the path to this
             // one left at most N - 1 behind, since one of its children was descended into.

@@ -8,7 +8,7 @@
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
     AllHits, BuildQuality, Bvh, BvhView, Exact, Fast, Hit, Hybrid, Kernel, Lanes, Packets,
-    QuantizedBvh, Ray, Single, Watertight, build,
+    QuantizedBvh, Ray, Scalar, Single, Watertight, build,
 };
 
 /// Squares behind each other, two triangles each.
@@ -57,6 +57,8 @@ where
     }
     let mut hits = expected.clone();
     Packets::<4>.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
+    assert_eq!(hits, expected);
+    Scalar.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
     assert_eq!(hits, expected);
     Hybrid::<4>.closest_hits(simd, Exact, bvh, &rays, &mut hits, &AllHits);
     assert!(hits.iter().zip(&expected).all(|(a, b)| a.prim == b.prim));

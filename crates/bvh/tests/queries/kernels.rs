@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use residual_bvh::{
     AllHits, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, Lanes, Packets, Precision, Ray,
-    Single, Watertight, build, closest_hit,
+    Scalar, Single, Watertight, build, closest_hit,
 };
 
 use crate::mesh::{Mesh, jittered_icosphere};
@@ -19,6 +19,8 @@ use crate::runner::{Random, aimed, same};
 const BATCH: usize = if cfg!(miri) { 6 } else { 1000 };
 /// Of the mesh.
 const LEVELS: usize = if cfg!(miri) { 0 } else { 2 };
+
+const KERNELS: [&str; 4] = ["single", "packets", "hybrid", "scalar"];
 
 /// A closed mesh around `center`, in hierarchies of all widths, and each triangle alone.
 struct Scene {
@@ -57,7 +59,8 @@ macro_rules! combinations {
     };
 }
 
-// For the best instruction set. Without lanes `Fast` does not fuse, and gives other bits.
+// For the best instruction set. Without lanes (trees of one triangle a packet, the scalar kernel)
+// `Fast` does not fuse, and gives other bits.
 combinations!(best:
     n2p1(2, 1, 4) by_all Watertight;
     n2p4(2, 4, 8) by_all Exact;
@@ -69,6 +72,10 @@ combinations!(best:
     n8p16(8, 16, 4) by_all Watertight;
     n16p8(16, 8, 8) by_all Watertight;
     n16p16(16, 16, 16) by_all Fast Exact;
+    n2p8(2, 8, 4) by_scalar Watertight;
+    n4p16(4, 16, 4) by_scalar Exact;
+    n8p1(8, 1, 4) by_scalar Exact;
+    n16p4(16, 4, 4) by_scalar Watertight;
 );
 // For the lesser ones.
 combinations!(others:
@@ -101,10 +108,9 @@ struct Counts {
     rays: [usize; 2],
     inside: [usize; 2],
     misses: [usize; 2],
-    /// Answers of hierarchies, `[single, packets, hybrid][kind of ray]`, and those unlike brute
-    /// force's.
-    answers: [[usize; 2]; 3],
-    disagreements: [[usize; 2]; 3],
+    /// Answers of hierarchies, `[kernel][kind of ray]`, and those unlike brute force's.
+    answers: [[usize; 2]; KERNELS.len()],
+    disagreements: [[usize; 2]; KERNELS.len()],
 }
 
 impl AddAssign for Tally {
@@ -114,7 +120,7 @@ impl AddAssign for Tally {
                 ours.rays[kind] += theirs.rays[kind];
                 ours.inside[kind] += theirs.inside[kind];
                 ours.misses[kind] += theirs.misses[kind];
-                for kernel in 0..3 {
+                for kernel in 0..KERNELS.len() {
                     ours.answers[kernel][kind] += theirs.answers[kernel][kind];
                     ours.disagreements[kernel][kind] += theirs.disagreements[kernel][kind];
                 }
@@ -167,6 +173,18 @@ fn by_some<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
 {
     compare(simd, Single, precision, bvh, batch, tally, 0);
     compare(simd, Hybrid::<R>, precision, bvh, batch, tally, 2);
+}
+
+fn by_scalar<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
+    simd: S,
+    precision: Pr,
+    bvh: &Bvh<N, P>,
+    batch: &Batch,
+    tally: &mut Tally,
+) where
+    S: Lanes<N> + Lanes<P>,
+{
+    compare(simd, Scalar, precision, bvh, batch, tally, 3);
 }
 
 fn compare<S, Pr: Judged, const N: usize, const P: usize>(
@@ -367,11 +385,14 @@ fn report(tally: &Tally) {
                 "{name:10} {rays:6}: {} rays, {} from inside, of which {} miss",
                 counts.rays[kind], counts.inside[kind], counts.misses[kind],
             );
-            for (kernel, name) in ["single", "packets", "hybrid"].iter().enumerate() {
+            for (kernel, name) in KERNELS.iter().enumerate() {
                 let (answers, disagreements) = (
                     counts.answers[kernel][kind],
                     counts.disagreements[kernel][kind],
                 );
+                if answers == 0 {
+                    continue;
+                }
                 println!(
                     "    {name:8} {answers:12} answers, {disagreements} disagree{}",
                     if disagreements == 0 {
@@ -389,10 +410,10 @@ fn check(tally: &Tally) {
     report(tally);
     let [fast, watertight, exact] = &tally.precisions;
     for counts in [watertight, exact] {
-        assert_eq!(counts.disagreements, [[0; 2]; 3]);
+        assert_eq!(counts.disagreements, [[0; 2]; KERNELS.len()]);
         assert_eq!(counts.misses, [0; 2]);
     }
-    for kernel in 0..3 {
+    for kernel in 0..KERNELS.len() {
         assert_eq!(fast.disagreements[kernel][0], 0);
         // None in five million answers was measured.
         assert!(fast.disagreements[kernel][1] * 100_000 <= fast.answers[kernel][1]);
