@@ -169,7 +169,17 @@ impl<'a> Buffers<'a> {
     /// One word; 0 outside the buffer, where only switched-off lanes read.
     #[inline(always)]
     pub fn word(&self, buffer: Buffer, index: u32) -> u32 {
-        self.get(buffer).get(index as usize).copied().unwrap_or(0)
+        // A choice of addresses, not of paths: lanes read without branches.
+        *self.get(buffer).get(index as usize).unwrap_or(&0)
+    }
+
+    /// `N` rows of four words each from word `first` on; 0 where they do not all lie within the buffer.
+    #[inline(always)]
+    pub fn rows<const N: usize>(&self, buffer: Buffer, first: u32) -> &'a [[u32; 4]; N] {
+        let first = first as usize;
+        let words = self.get(buffer).get(first..first.saturating_add(4 * N));
+        let rows = words.and_then(|words| words.as_chunks().0.first_chunk());
+        rows.unwrap_or(const { &[[0; 4]; N] })
     }
 }
 
@@ -238,12 +248,27 @@ pub trait Domain: Copy {
     )]
     fn from_bits(self, a: Self::U) -> Self::F;
 
+    /// The bits in the opposite order.
+    fn reverse_bits(self, a: Self::U) -> Self::U;
+
     /// One word of a buffer.
     fn load(self, buffer: Buffer, index: Self::U) -> Self::U;
     /// One word of a buffer as a real number.
     #[inline(always)]
     fn load_real(self, buffer: Buffer, index: Self::U) -> Self::F {
         self.from_bits(self.load(buffer, index))
+    }
+    /// `N` rows of four consecutive words each from word `first` on. The rows of one lane lie within the buffer, all
+    /// of them, or outside it, all of them: then they are 0, and only switched-off lanes read there.
+    #[inline(always)]
+    fn load_rows<const N: usize>(self, buffer: Buffer, first: Self::U) -> [[Self::U; 4]; N] {
+        let mut rows = [[first; 4]; N];
+        for (r, row) in rows.iter_mut().enumerate() {
+            for (k, word) in row.iter_mut().enumerate() {
+                *word = self.load(buffer, first + self.uint((4 * r + k) as u32));
+            }
+        }
+        rows
     }
     /// The same word for all lanes.
     fn uniform(self, buffer: Buffer, index: u32) -> Self::U;

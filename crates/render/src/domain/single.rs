@@ -110,8 +110,16 @@ macro_rules! single {
                 $real::from(f32::from_bits(a.0))
             }
             #[inline(always)]
+            fn reverse_bits(self, a: Uint) -> Uint {
+                Uint(a.0.reverse_bits())
+            }
+            #[inline(always)]
             fn load(self, buffer: Buffer, index: Uint) -> Uint {
                 Uint(self.buffers.word(buffer, index.0))
+            }
+            #[inline(always)]
+            fn load_rows<const N: usize>(self, buffer: Buffer, first: Uint) -> [[Uint; 4]; N] {
+                self.buffers.rows(buffer, first.0).map(|row| row.map(Uint))
             }
             #[inline(always)]
             fn uniform(self, buffer: Buffer, index: u32) -> Uint {
