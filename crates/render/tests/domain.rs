@@ -443,7 +443,7 @@ fn textures_agree() {
     let mut data = scene(&[FLOOR]);
     let mut rng = Rng::new(48);
     *data.buffer_mut(Buffer::Texels) = (0..4 * 35).map(|_| rng.bits() & 0xbf7f_ffff).collect();
-    set_params(&mut data, &[0, 5, 7].map(f32::from_bits));
+    set_params(&mut data, &[0, 5, 7, 0].map(f32::from_bits));
     let moderate = reals(49, |r| {
         [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]
     });

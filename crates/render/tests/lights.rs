@@ -232,10 +232,10 @@ fn punctual_lights_are_their_closed_forms() {
             intensity,
             0.0,
             0.0,
+            scale as f32,
             a,
             b,
             c,
-            scale as f32,
             (-outer * scale) as f32,
         ];
         set_lights(&mut data, &[record(&spot)], &[1.0]);
@@ -395,7 +395,7 @@ fn environment_samples_see_what_they_were_drawn_with() {
     );
     // Frequencies of texels are those of the table.
     let words = data.buffer(residual_render::domain::Buffer::Environment);
-    let density = |k: usize| f64::from(f32::from_bits(words[8 + 3 * k + 2]));
+    let density = |k: usize| f64::from(f32::from_bits(words[8 + 4 * k + 2]));
     let expected: Vec<_> = (0..width * height)
         .map(|k| density(k) / (width * height) as f64 * n as f64)
         .collect();

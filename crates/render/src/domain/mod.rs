@@ -77,31 +77,27 @@ impl<T> Unsigned for T where
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
 impl<T> Mask for T where T: Copy + BitAnd<Output = T> + BitOr<Output = T> + Not<Output = T> {}
 
-/// The buffers a formula can read. Each is an array of 32-bit words; see `scene` for their layouts.
+/// The buffers a formula can read. Each is an array of 32-bit words; four consecutive ones make a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(usize)]
 pub enum Buffer {
-    /// Corners: three vertex numbers a triangle.
+    /// Three rows a triangle: a corner's x, y, z each, and behind them the first word of the material's parameters,
+    /// the light's number or `u32::MAX`, and 0.
     Triangles,
-    /// x, y, z a vertex.
-    Positions,
-    /// x, y, z a vertex.
+    /// Its program, a triangle.
+    TrianglePrograms,
+    /// The numbers of three vertices and 0, a triangle. Only where attributes are read.
+    Indices,
+    /// x, y, z, 0 a vertex.
     Normals,
     /// x, y, z, sign a vertex.
     Tangents,
-    /// u, v a vertex.
-    Uv0,
-    /// u, v a vertex.
-    Uv1,
+    /// Two sets of texture coordinates, u, v, u, v a vertex.
+    Uvs,
     /// r, g, b, a a vertex.
     Colors,
-    /// Its program, a triangle.
-    TrianglePrograms,
-    /// First word of its material's parameters, a triangle.
-    TriangleParams,
-    /// Its light, or `u32::MAX`, a triangle. Only where surfaces emit.
-    TriangleLights,
-    /// Parameter blocks of the materials.
+    /// Parameter blocks of the materials: a number a word, and a colour, an image's slot, each half of a texture
+    /// transform a row of three words and 0.
     Params,
     /// Texels of all images.
     Texels,
@@ -124,15 +120,12 @@ impl Buffer {
     /// All of them, in order.
     pub const ALL: [Self; Self::COUNT] = [
         Self::Triangles,
-        Self::Positions,
+        Self::TrianglePrograms,
+        Self::Indices,
         Self::Normals,
         Self::Tangents,
-        Self::Uv0,
-        Self::Uv1,
+        Self::Uvs,
         Self::Colors,
-        Self::TrianglePrograms,
-        Self::TriangleParams,
-        Self::TriangleLights,
         Self::Params,
         Self::Texels,
         Self::Lights,

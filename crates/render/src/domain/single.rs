@@ -119,7 +119,13 @@ macro_rules! single {
             }
             #[inline(always)]
             fn load_rows<const N: usize>(self, buffer: Buffer, first: Uint) -> [[Uint; 4]; N] {
-                self.buffers.rows(buffer, first.0).map(|row| row.map(Uint))
+                let mut rows = [[Uint(0); 4]; N];
+                for (row, from) in rows.iter_mut().zip(self.buffers.rows::<N>(buffer, first.0)) {
+                    for (word, &from) in row.iter_mut().zip(from) {
+                        *word = Uint(from);
+                    }
+                }
+                rows
             }
             #[inline(always)]
             fn uniform(self, buffer: Buffer, index: u32) -> Uint {

@@ -20,8 +20,7 @@ pub struct Area<E> {
 impl<D: Domain, E: ColorSource<D>> LightKind<D> for Area<E> {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, from: &Surface<D>, u: [D::F; 3]) -> LightSample<D> {
-        let prim = d.load(Buffer::Lights, record + d.uint(1));
-        let both_sides = d.load(Buffer::Lights, record + d.uint(2));
+        let [[_, prim, both_sides, _]] = d.load_rows(Buffer::Lights, record);
         let (b1, b2) = warp::triangle(d, [u[0], u[1]]);
         let there = Surface::seen_from(d, self.attributes, prim, [b1, b2], from.point);
         let towards = there.point - from.point;

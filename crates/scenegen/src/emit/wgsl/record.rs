@@ -4,7 +4,7 @@ use residual_render::bsdf::{Bsdf, BsdfSample, BsdfValue};
 use residual_render::camera::Camera;
 use residual_render::domain::tape::{Function, Outputs, Real, Record, Tape};
 use residual_render::domain::{Buffers, Domain};
-use residual_render::light::{self, LightSample};
+use residual_render::light::{self, LightSample, NO_LIGHT};
 use residual_render::material::Material;
 use residual_render::math::{Frame, Vec3};
 use residual_render::program::{
@@ -169,6 +169,7 @@ fn only_point<'t>(d: Record<'t>, point: Vec3<Real<'t>>) -> Surface<Record<'t>> {
         color: nowhere,
         alpha: zero,
         params: d.uint(0),
+        light: d.uint(NO_LIGHT),
         inputs: [nowhere; MAX_INPUTS],
     }
 }
