@@ -7,7 +7,7 @@ use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptio
 use residual_render::camera::AnyCamera;
 use residual_render::domain::Buffer;
 use residual_render::film::Film;
-use residual_render::light::{NO_LIGHT, RECORD};
+use residual_render::light::RECORD;
 use residual_render::program::{
     BsdfNode, ColorNode, EmissionNode, InputNode, LightNode, Program, SourceNode, Structure,
 };
@@ -50,36 +50,25 @@ fn scene(
     camera: [f32; 12],
 ) -> (Structure, SceneData) {
     let mut data = SceneData::default();
-    let positions: Vec<f32> = triangles
-        .iter()
-        .flat_map(|(t, _)| t.as_flattened().to_vec())
-        .collect();
-    *data.buffer_mut(Buffer::Positions) = words(&positions);
-    *data.buffer_mut(Buffer::Triangles) = (0..3 * triangles.len() as u32).collect();
-    *data.buffer_mut(Buffer::TrianglePrograms) =
-        triangles.iter().map(|(_, program)| *program).collect();
-    *data.buffer_mut(Buffer::TriangleParams) = vec![0; triangles.len()];
+    for &(triangle, program) in triangles {
+        data.push_triangle(triangle, program, 0);
+    }
     *data.buffer_mut(Buffer::Camera) = words(&camera);
     data.single_sided = vec![false; triangles.len()];
     let emits = |program: u32| programs[program as usize].emission.is_some();
     let lights: Vec<u32> = (0..triangles.len() as u32)
         .filter(|k| emits(triangles[*k as usize].1))
         .collect();
-    let mut of_triangle = vec![NO_LIGHT; triangles.len()];
-    let mut alias = vec![lights.len() as u32];
+    let mut alias = vec![lights.len() as u32, 0, 0, 0];
     for (light, &prim) in (0..).zip(&lights) {
-        of_triangle[prim as usize] = light;
+        data.set_light(prim as usize, light);
         let mut record = vec![0, prim, 1];
         record.resize(RECORD as usize, 0);
         data.buffer_mut(Buffer::Lights).extend(record);
         // All lights of these scenes have the same area.
-        alias.extend([
-            1.0_f32.to_bits(),
-            light,
-            (1.0 / lights.len() as f32).to_bits(),
-        ]);
+        let probability = (1.0 / lights.len() as f32).to_bits();
+        alias.extend([1.0_f32.to_bits(), light, probability, probability]);
     }
-    *data.buffer_mut(Buffer::TriangleLights) = of_triangle;
     *data.buffer_mut(Buffer::LightAlias) = alias;
     let emission = ColorNode::Const([emission; 3]);
     let area = LightNode::Area {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use residual_render::bsdf::Bsdf;
-use residual_render::domain::{Buffer, Lanes, MAX_LANES};
+use residual_render::domain::{Lanes, MAX_LANES};
 use residual_render::light::LightKinds;
 use residual_render::material::Material;
 use residual_render::math::Color;
@@ -64,8 +64,9 @@ impl<D, S, L: ?Sized> Shade<'_, D, S, L> {
             let shading = material.shade(d, &mut surface, wo);
 
             if let Some(emission) = shading.emission {
-                let light = d.load(Buffer::TriangleLights, hit.prim);
-                let seen = self.tracer.on_hit(d, &path, &surface, emission, light);
+                let seen = self
+                    .tracer
+                    .on_hit(d, &path, &surface, emission, surface.light);
                 add(d, valid, place.pixel, seen, self.radiance);
             }
             let kind = shading.bsdf.kind();

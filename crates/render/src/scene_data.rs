@@ -1,6 +1,8 @@
 //! A scene's data: the dynamic half of a scene, whose static half is its `program::Structure`.
 
 use crate::domain::{Buffer, Buffers};
+use crate::light::NO_LIGHT;
+use crate::surface::TRIANGLE_WORDS;
 
 /// The buffers of a scene, owned, and what traversal needs beside them.
 #[derive(Clone, Debug, Default)]
@@ -26,23 +28,39 @@ impl SceneData {
         Buffers::new(self.buffers.each_ref().map(Vec::as_slice))
     }
 
-    /// How many triangles there are.
-    pub fn triangle_count(&self) -> usize {
-        self.buffer(Buffer::Triangles).len() / 3
+    /// Adds a triangle that is no light. Its attributes, if any, are the vertices that are added to
+    /// [`Buffer::Indices`].
+    pub fn push_triangle(&mut self, corners: [[f32; 3]; 3], program: u32, params: u32) {
+        let last_words = [params, NO_LIGHT, 0];
+        for (corner, last) in corners.into_iter().zip(last_words) {
+            let [x, y, z] = corner.map(f32::to_bits);
+            self.buffer_mut(Buffer::Triangles).extend([x, y, z, last]);
+        }
+        self.buffer_mut(Buffer::TrianglePrograms).push(program);
     }
 
-    /// Vertex positions.
+    /// Makes a triangle a light.
+    pub fn set_light(&mut self, triangle: usize, light: u32) {
+        self.buffer_mut(Buffer::Triangles)[triangle * TRIANGLE_WORDS as usize + 7] = light;
+    }
+
+    /// How many triangles there are.
+    pub fn triangle_count(&self) -> usize {
+        self.buffer(Buffer::TrianglePrograms).len()
+    }
+
+    /// Positions of the corners, three a triangle.
     pub fn positions(&self) -> Vec<[f32; 3]> {
-        let words = self.buffer(Buffer::Positions).chunks_exact(3);
-        words
-            .map(|p| [p[0], p[1], p[2]].map(f32::from_bits))
+        let (rows, _) = self.buffer(Buffer::Triangles).as_chunks();
+        rows.iter()
+            .map(|&[x, y, z, _]| [x, y, z].map(f32::from_bits))
             .collect()
     }
 
-    /// Corners of the triangles.
+    /// The corners of the triangles among [`SceneData::positions`].
     pub fn triangles(&self) -> Vec<[u32; 3]> {
-        let words = self.buffer(Buffer::Triangles).chunks_exact(3);
-        words.map(|t| [t[0], t[1], t[2]]).collect()
+        let corners = |triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2];
+        (0..self.triangle_count() as u32).map(corners).collect()
     }
 
     /// Bytes in all buffers.

@@ -64,7 +64,7 @@ impl Attributes {
 }
 
 /// The numbers of inputs that boxed programs keep per surface point.
-pub const MAX_INPUTS: usize = 32;
+pub const MAX_INPUTS: usize = 16;
 
 /// A point of a surface and the way it was reached.
 #[derive(Clone, Copy, Debug)]
@@ -91,85 +91,119 @@ pub struct Surface<D: Domain> {
     pub alpha: D::F,
     /// First word of the material's parameters.
     pub params: D::U,
+    /// The light's number, or [`NO_LIGHT`](crate::light::NO_LIGHT).
+    pub light: D::U,
     /// Inputs of a boxed program, evaluated once per point. Unused, and optimised away, in emitted programs.
     pub inputs: [Vec3<D::F>; MAX_INPUTS],
 }
 
-/// Corners of a triangle with interpolation weights.
-struct Corners<D: Domain> {
-    vertices: [D::U; 3],
+/// Words of a triangle in [`Buffer::Triangles`].
+pub const TRIANGLE_WORDS: u32 = 12;
+
+/// The place of a hit on its triangle.
+struct Place<D: Domain> {
+    /// Weights of the corners.
     weights: [D::F; 3],
+    point: Vec3<D::F>,
+    /// Bound on the rounding error of each component of `point`.
+    error: Vec3<D::F>,
+    /// The triangle's normal; its length is twice the area.
+    normal: Vec3<D::F>,
+    params: D::U,
+    light: D::U,
 }
 
-impl<D: Domain> Corners<D> {
+impl<D: Domain> Place<D> {
+    /// The bound on the error is γ₇ times the weighted magnitudes of the corners (Pharr, Jakob, Humphreys 2023,
+    /// section 6.8.4).
     #[inline(always)]
-    fn new(d: D, prim: D::U, u: D::F, v: D::F) -> Self {
-        let three = prim + (prim << 1);
-        let vertices = [0, 1, 2].map(|k| d.load(Buffer::Triangles, three + d.uint(k)));
+    fn new(d: D, hit: &Hit<D>) -> Self {
+        let first = hit.prim * d.uint(TRIANGLE_WORDS);
+        let [row0, row1, row2] = d.load_rows(Buffer::Triangles, first);
+        let weights = [d.lit(1.0) - hit.u - hit.v, hit.u, hit.v];
+        let [a, b, c] = [
+            Vec3::from_row(d, row0),
+            Vec3::from_row(d, row1),
+            Vec3::from_row(d, row2),
+        ];
+        let (wa, wb, wc) = (
+            a.scale(weights[0]),
+            b.scale(weights[1]),
+            c.scale(weights[2]),
+        );
+        let magnitude = |v: Vec3<D::F>| v.map(|x| d.abs(x));
+        let gamma = d.lit(7.0 * 5.960_464_5e-8 / (1.0 - 7.0 * 5.960_464_5e-8));
         Self {
-            vertices,
-            weights: [d.lit(1.0) - u - v, u, v],
+            weights,
+            point: wa + wb + wc,
+            error: (magnitude(wa) + magnitude(wb) + magnitude(wc)).scale(gamma),
+            normal: (b - a).cross(c - a),
+            params: row0[3],
+            light: row1[3],
         }
     }
-
-    /// Component `k` of an attribute with `stride` words a vertex, at the three corners.
-    #[inline(always)]
-    fn component(&self, d: D, buffer: Buffer, stride: u32, k: u32) -> [D::F; 3] {
-        self.vertices
-            .map(|vertex| d.load_real(buffer, vertex * d.uint(stride) + d.uint(k)))
-    }
-
-    #[inline(always)]
-    fn interpolate(&self, d: D, buffer: Buffer, stride: u32, k: u32) -> D::F {
-        let c = self.component(d, buffer, stride, k);
-        let w = &self.weights;
-        d.fma(c[0], w[0], d.fma(c[1], w[1], c[2] * w[2]))
-    }
-
-    #[inline(always)]
-    fn interpolate3(&self, d: D, buffer: Buffer, stride: u32) -> Vec3<D::F> {
-        let [x, y, z] = [0, 1, 2].map(|k| self.interpolate(d, buffer, stride, k));
-        vec3(x, y, z)
-    }
-
-    #[inline(always)]
-    fn uv(&self, d: D, buffer: Buffer) -> [D::F; 2] {
-        [0, 1].map(|k| self.interpolate(d, buffer, 2, k))
-    }
 }
 
-/// A point with the bound on its error, and the triangle's unnormalised normal.
-///
-/// The bound is γ₇ times the weighted magnitudes of the corners (Pharr, Jakob, Humphreys 2023, section 6.8.4).
-#[inline(always)]
-fn position<D: Domain>(
-    d: D,
-    weights: &[D::F; 3],
-    axes: [[D::F; 3]; 3],
-) -> (Vec3<D::F>, Vec3<D::F>, Vec3<D::F>) {
-    let gamma = d.lit(7.0 * 5.960_464_5e-8 / (1.0 - 7.0 * 5.960_464_5e-8));
-    let [x, y, z] = axes.map(|c| {
-        let terms = [c[0] * weights[0], c[1] * weights[1], c[2] * weights[2]];
-        let error = (d.abs(terms[0]) + d.abs(terms[1]) + d.abs(terms[2])) * gamma;
-        (
-            terms[0] + terms[1] + terms[2],
-            error,
-            c[1] - c[0],
-            c[2] - c[0],
+/// An attribute at the corners of a triangle: a row each.
+struct Corners<'a, D: Domain> {
+    rows: [[D::F; 4]; 3],
+    weights: &'a [D::F; 3],
+}
+
+impl<D: Domain> Corners<'_, D> {
+    /// Component `k`, interpolated.
+    #[inline(always)]
+    fn component(&self, d: D, k: usize) -> D::F {
+        let ([a, b, c], w) = (&self.rows, self.weights);
+        d.fma(a[k], w[0], d.fma(b[k], w[1], c[k] * w[2]))
+    }
+
+    /// The first three components, interpolated.
+    #[inline(always)]
+    fn vector(&self, d: D) -> Vec3<D::F> {
+        vec3(
+            self.component(d, 0),
+            self.component(d, 1),
+            self.component(d, 2),
         )
-    });
-    let edge1 = vec3(x.2, y.2, z.2);
-    let edge2 = vec3(x.3, y.3, z.3);
-    (vec3(x.0, y.0, z.0), vec3(x.1, y.1, z.1), edge1.cross(edge2))
+    }
 }
 
 impl<D: Domain> Surface<D> {
     /// The surface at a hit of a ray with direction `dir`, with the attributes that its material reads.
     #[inline(always)]
     pub fn new(d: D, attributes: Attributes, hit: &Hit<D>, dir: Vec3<D::F>) -> Self {
-        let corners = Corners::new(d, hit.prim, hit.u, hit.v);
-        let axes = [0, 1, 2].map(|k| corners.component(d, Buffer::Positions, 3, k));
-        let (point, error, normal) = position(d, &corners.weights, axes);
+        Self::at(d, attributes, &Place::new(d, hit), hit.prim, dir)
+    }
+
+    /// The surface at a place on triangle `prim`.
+    #[inline(always)]
+    fn at(d: D, attributes: Attributes, place: &Place<D>, prim: D::U, dir: Vec3<D::F>) -> Self {
+        let (point, error, normal) = (place.point, place.error, place.normal);
+        let vertices = if attributes == Attributes::NONE {
+            // Of no use: nothing reads them.
+            [prim; 4]
+        } else {
+            let [row] = d.load_rows(Buffer::Indices, prim << 2);
+            row
+        };
+        let corner = |buffer: Buffer, vertex: D::U| {
+            let [[x, y, z, w]] = d.load_rows(buffer, vertex << 2);
+            [
+                d.from_bits(x),
+                d.from_bits(y),
+                d.from_bits(z),
+                d.from_bits(w),
+            ]
+        };
+        let corners = |buffer: Buffer| Corners::<D> {
+            rows: [
+                corner(buffer, vertices[0]),
+                corner(buffer, vertices[1]),
+                corner(buffer, vertices[2]),
+            ],
+            weights: &place.weights,
+        };
         let outward = normal.normalize_any(d);
         let wo = -dir.normalize(d);
         let cos_outward = outward.dot(d, wo);
@@ -180,7 +214,7 @@ impl<D: Domain> Surface<D> {
         // Which side a stored normal is on is the file's affair, and files err: it is turned to the side of the
         // geometric normal, which follows the winding alone.
         let (shading_normal, turned) = if attributes.normals {
-            let stored = corners.interpolate3(d, Buffer::Normals, 3).normalize_any(d);
+            let stored = corners(Buffer::Normals).vector(d).normalize_any(d);
             let turned = d.lt(stored.dot(d, geometric_normal), zero);
             let normal = stored.map(|c| d.select(turned, -c, c));
             (visible(d, normal, wo), turned)
@@ -189,8 +223,8 @@ impl<D: Domain> Surface<D> {
         };
         let mut frame = Frame::around(d, shading_normal);
         if attributes.tangents {
-            let raw = corners.interpolate3(d, Buffer::Tangents, 4);
-            let sign = corners.component(d, Buffer::Tangents, 4, 3)[0];
+            let tangents = corners(Buffer::Tangents);
+            let (raw, sign) = (tangents.vector(d), tangents.rows[0][3]);
             // Gram–Schmidt; where the tangent vanishes the frame around the normal stays.
             let tangent = raw - shading_normal.scale(raw.dot(d, shading_normal));
             let length = tangent.length(d);
@@ -208,19 +242,20 @@ impl<D: Domain> Surface<D> {
             frame.tangent = pick(tangent, frame.tangent);
             frame.bitangent = pick(bitangent, frame.bitangent);
         }
-        let uv = |wanted: bool, buffer: Buffer| {
-            if wanted {
-                corners.uv(d, buffer)
-            } else {
-                [zero; 2]
+        let mut uv = [[zero; 2]; 2];
+        if attributes.uv0 || attributes.uv1 {
+            let uvs = corners(Buffer::Uvs);
+            if attributes.uv0 {
+                uv[0] = [uvs.component(d, 0), uvs.component(d, 1)];
             }
-        };
+            if attributes.uv1 {
+                uv[1] = [uvs.component(d, 2), uvs.component(d, 3)];
+            }
+        }
         let one = d.lit(1.0);
         let (color, alpha) = if attributes.colors {
-            (
-                corners.interpolate3(d, Buffer::Colors, 4),
-                corners.interpolate(d, Buffer::Colors, 4, 3),
-            )
+            let colors = corners(Buffer::Colors);
+            (colors.vector(d), colors.component(d, 3))
         } else {
             (Vec3::splat(one), one)
         };
@@ -232,13 +267,11 @@ impl<D: Domain> Surface<D> {
             frame,
             front,
             cos_geometric: d.abs(cos_outward),
-            uv: [
-                uv(attributes.uv0, Buffer::Uv0),
-                uv(attributes.uv1, Buffer::Uv1),
-            ],
+            uv,
             color,
             alpha,
-            params: d.load(Buffer::TriangleParams, hit.prim),
+            params: place.params,
+            light: place.light,
             inputs: [Vec3::splat(zero); MAX_INPUTS],
         }
     }
@@ -252,10 +285,8 @@ impl<D: Domain> Surface<D> {
         [u, v]: [D::F; 2],
         from: Vec3<D::F>,
     ) -> Self {
-        let corners = Corners::new(d, prim, u, v);
-        let axes = [0, 1, 2].map(|k| corners.component(d, Buffer::Positions, 3, k));
-        let (point, _, _) = position(d, &corners.weights, axes);
-        Self::new(d, attributes, &Hit { u, v, prim }, point - from)
+        let place = Place::new(d, &Hit { u, v, prim });
+        Self::at(d, attributes, &place, prim, place.point - from)
     }
 
     /// Replaces the shading normal, given in the shading frame (a normal map's value).

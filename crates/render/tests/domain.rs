@@ -185,6 +185,7 @@ impl Formula for Operations {
             i >> 13,
             i << 0,
             i >> 31,
+            d.reverse_bits(i),
             d.select_u(mask, i, j),
             d.load(Buffer::Tables, i >> 22),
             d.uniform(Buffer::Tables, 255),
@@ -206,6 +207,36 @@ fn operations_agree() {
     // Numbers of like size, whose results are not all infinite or 0.
     let near = reals(41, |r| [0; 5].map(|_| r.signed_power(-3.0, 30.0)));
     check("operations", &scene(&[FLOOR]), &Operations, &near);
+}
+
+#[test]
+fn rows_are_four_words() {
+    struct Rows;
+    impl Formula for Rows {
+        fn run<D: Lanes>(&self, d: D, x: &[D::U]) -> Vec<D::U> {
+            let one: [_; 1] = d.load_rows(Buffer::Tables, x[0]);
+            let three: [_; 3] = d.load_rows(Buffer::Tables, x[0]);
+            let words = one.into_iter().chain(three).flatten();
+            let single = (0..12).map(|k| d.load(Buffer::Tables, x[0] + d.uint(k)));
+            words.chain(single).collect()
+        }
+    }
+    // Starts of rows all of whose words are inside or outside.
+    let mut rng = Rng::new(43);
+    let first = |row: usize| match row {
+        0 => 244,
+        1 => 256,
+        2 => u32::MAX - 11,
+        _ if row % 3 == 0 => 256 + rng.bits() % (u32::MAX - 268),
+        _ => rng.bits() % 245,
+    };
+    let columns = [(0..ROWS).map(first).collect()];
+    let data = scene(&[FLOOR]);
+    let buffers = data.buffers();
+    let results = evaluate(Scalar::new(&buffers), &Rows, &columns);
+    assert_eq!(results[..4], results[16..20]);
+    assert_eq!(results[4..16], results[16..]);
+    check("rows", &data, &Rows, &columns);
 }
 
 #[test]
@@ -352,9 +383,9 @@ macro_rules! light_formula {
                 let [a, b, c, u, v] = [0, 1, 2, 3, 4].map(|k| d.from_bits(x[k]));
                 let hit = Hit { u: u * d.lit(0.5), v: v * d.lit(0.5), prim: d.uint(0) };
                 let surface = Surface::new(d, Attributes::default(), &hit, vec3(u, v, d.lit(-0.3)));
-                let sample = self.0.sample(d, d.uint(0), &surface, [a, b, c]);
+                let sample = self.0.sample(d, d.uint(0), surface.point, [a, b, c]);
                 let mut results = light_words(d, sample);
-                results.extend(light_words(d, light::sample(d, &(self.0, ()), &surface, [c, a, b, u])));
+                results.extend(light_words(d, light::sample(d, &(self.0, ()), surface.point, [c, a, b, u])));
                 if let Some(seen) = self.0.background(d, sample.wi) {
                     results.extend(words(d, vector(seen.radiance).into_iter().chain([seen.pdf])));
                 }
@@ -412,7 +443,7 @@ fn textures_agree() {
     let mut data = scene(&[FLOOR]);
     let mut rng = Rng::new(48);
     *data.buffer_mut(Buffer::Texels) = (0..4 * 35).map(|_| rng.bits() & 0xbf7f_ffff).collect();
-    set_params(&mut data, &[0, 5, 7].map(f32::from_bits));
+    set_params(&mut data, &[0, 5, 7, 0].map(f32::from_bits));
     let moderate = reals(49, |r| {
         [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]
     });

@@ -55,7 +55,7 @@ fn estimate<L: for<'a> LightKinds<Scalar<'a>>>(
     for _ in 0..n {
         let [a, b, c] = rng.unit3();
         mean.add(irradiance(
-            &light::sample(d, lights, &surface, [a, b, c, rng.unit()]),
+            &light::sample(d, lights, surface.point, [a, b, c, rng.unit()]),
             normal,
         ));
     }
@@ -161,7 +161,7 @@ fn density_of_a_light_is_the_same_from_both_sides() {
     let mut rng = Rng::new(132);
     let mut worst = Worst::default();
     for _ in 0..10_000 {
-        let sample = LAMP.sample(d, Uint(0), &floor(d), rng.unit3());
+        let sample = LAMP.sample(d, Uint(0), floor(d).point, rng.unit3());
         let (b1, b2) = residual_render::math::warp::triangle(d, [rng.unit(), rng.unit()]);
         let hit = surface_at(
             d,
@@ -232,10 +232,10 @@ fn punctual_lights_are_their_closed_forms() {
             intensity,
             0.0,
             0.0,
+            scale as f32,
             a,
             b,
             c,
-            scale as f32,
             (-outer * scale) as f32,
         ];
         set_lights(&mut data, &[record(&spot)], &[1.0]);
@@ -367,7 +367,7 @@ fn environment_samples_see_what_they_were_drawn_with() {
     let n = 200_000;
     for _ in 0..n {
         let u = rng.unit3();
-        let sample = LightKind::sample(&Environment, d, Uint(0), &surface, u);
+        let sample = LightKind::sample(&Environment, d, Uint(0), surface.point, u);
         let wi = array(sample.wi).map(f64::from);
         unit_length.add((dot(wi, wi) - 1.0).abs(), || format!("{u:?}"));
         let (radiance, pdf) = seen(&data, wi);
@@ -395,7 +395,7 @@ fn environment_samples_see_what_they_were_drawn_with() {
     );
     // Frequencies of texels are those of the table.
     let words = data.buffer(residual_render::domain::Buffer::Environment);
-    let density = |k: usize| f64::from(f32::from_bits(words[8 + 3 * k + 2]));
+    let density = |k: usize| f64::from(f32::from_bits(words[8 + 4 * k + 2]));
     let expected: Vec<_> = (0..width * height)
         .map(|k| density(k) / (width * height) as f64 * n as f64)
         .collect();
@@ -420,7 +420,12 @@ fn lights_are_picked_by_their_weights() {
     let (mut counts, n) = (vec![0.0; 7], 400_000.0);
     let total: f64 = weights.iter().sum();
     for _ in 0..n as usize {
-        let sample = light::sample(d, &(Directional, ()), &surface, [rng.unit(), 0.5, 0.5, 0.5]);
+        let sample = light::sample(
+            d,
+            &(Directional, ()),
+            surface.point,
+            [rng.unit(), 0.5, 0.5, 0.5],
+        );
         let light = sample.radiance.x as usize - 1;
         counts[light] += 1.0;
         assert!((f64::from(sample.pdf) - weights[light] / total).abs() < 1e-7);
@@ -437,7 +442,7 @@ fn lights_are_picked_by_their_weights() {
     set_lights(&mut data, &[both], &[1.0]);
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
-    let sample = light::sample(d, &(Directional, (Point, ())), &floor(d), [0.5; 4]);
+    let sample = light::sample(d, &(Directional, (Point, ())), floor(d).point, [0.5; 4]);
     assert!(!sample.infinite && (f64::from(sample.radiance.x) - 1.75).abs() < 1e-6);
 }
 

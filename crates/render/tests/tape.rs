@@ -499,13 +499,13 @@ impl Formula for Lights {
             Some(kind) => {
                 let node = &scene.lights()[kind];
                 let record = d.uint(16 * kind as u32);
-                let sample = node.sample(d, record, &surface, [u[0], u[1], u[2]]);
+                let sample = node.sample(d, record, surface.point, [u[0], u[1], u[2]]);
                 (sample, node.background(d, dir))
             }
             None => {
                 let lights = scene.lights();
                 (
-                    light::sample(d, lights, &surface, u),
+                    light::sample(d, lights, surface.point, u),
                     light::LightKinds::background(lights, d, dir),
                 )
             }

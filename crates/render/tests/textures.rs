@@ -52,7 +52,7 @@ fn numbered(width: u32, height: u32) -> SceneData {
     words.extend((0..width * height).flat_map(texel).map(f32::to_bits));
     words.extend([(-1e9_f32).to_bits(); 64]);
     *data.buffer_mut(Buffer::Texels) = words;
-    set_params(&mut data, &[8, width, height].map(f32::from_bits));
+    set_params(&mut data, &[8, width, height, 0].map(f32::from_bits));
     data
 }
 
@@ -210,8 +210,8 @@ fn hostile_coordinates_stay_inside() {
 fn transforms_and_second_coordinates() {
     let mut data = numbered(4, 4);
     // u' = v, v' = −u + 1: a quarter turn.
-    let matrix = [0.0, 1.0, 0.0, -1.0, 0.0, 1.0];
-    let params: Vec<f32> = [8, 4, 4]
+    let matrix = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0];
+    let params: Vec<f32> = [8, 4, 4, 0]
         .map(f32::from_bits)
         .into_iter()
         .chain(matrix)
@@ -235,8 +235,8 @@ fn transforms_and_second_coordinates() {
     };
     assert_eq!(at(0, None), 13.0, "column 0, row 3");
     assert_eq!(at(1, None), 7.0, "column 2, row 1");
-    assert_eq!(at(0, Some(3)), 16.0, "column 3, row 3");
-    assert_eq!(at(1, Some(3)), 6.0, "column 1, row 1");
+    assert_eq!(at(0, Some(4)), 16.0, "column 3, row 3");
+    assert_eq!(at(1, Some(4)), 6.0, "column 1, row 1");
 }
 
 #[test]

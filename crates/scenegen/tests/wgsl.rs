@@ -410,7 +410,7 @@ fn constants_leave_a_short_program() {
     let text = wgsl_module(&structure(vec![program], vec![]));
     for absent in [
         "params",
-        "triangle_params",
+        "indices",
         "normals",
         "if ",
         "program_0_emission",

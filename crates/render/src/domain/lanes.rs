@@ -1,8 +1,8 @@
 //! `f32` in SIMD lanes: 4, 8 or 16 paths at once, on whatever instruction set the token stands for.
 
 use fearless_simd::{
-    Bytes, Select, Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask, f32x4,
-    f32x8, f32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
+    Bytes, Select, Simd, SimdBase, SimdCombine, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask,
+    f32x4, f32x8, f32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
 };
 
 use super::single::Uint;
@@ -65,7 +65,7 @@ impl Lanes for Scalar<'_> {
 }
 
 macro_rules! lanes {
-    ($name:ident, $lanes:literal, $real:ident, $word:ident, $mask:ident) => {
+    ($name:ident, $lanes:literal, $real:ident, $word:ident, $mask:ident, $transpose:ident) => {
         #[doc = concat!("The domain of ", $lanes, " `f32` lanes.")]
         #[derive(Clone, Copy, Debug)]
         pub struct $name<'a, S> {
@@ -171,12 +171,42 @@ macro_rules! lanes {
                 a.bitcast()
             }
             #[inline(always)]
+            fn reverse_bits(self, a: Self::U) -> Self::U {
+                // The compiler makes vector instructions of this: one or two where there are any for it.
+                let mut words = [0; $lanes];
+                for (word, a) in words.iter_mut().zip(a.as_slice()) {
+                    *word = a.reverse_bits();
+                }
+                $word::load_array(self.simd, words)
+            }
+            #[inline(always)]
             fn load(self, buffer: Buffer, index: Self::U) -> Self::U {
                 let mut words = [0; $lanes];
                 for (word, &index) in words.iter_mut().zip(index.as_slice()) {
                     *word = self.buffers.word(buffer, index);
                 }
                 $word::load_array(self.simd, words)
+            }
+            #[inline(always)]
+            fn load_rows<const N: usize>(
+                self,
+                buffer: Buffer,
+                first: Self::U,
+            ) -> [[Self::U; 4]; N] {
+                let first = first.as_slice();
+                let mut lanes = [self.buffers.rows::<N>(buffer, first[0]); $lanes];
+                for (lane, &first) in lanes.iter_mut().zip(first).skip(1) {
+                    *lane = self.buffers.rows(buffer, first);
+                }
+                let mut rows = [[self.uint(0); 4]; N];
+                for (r, row) in rows.iter_mut().enumerate() {
+                    let mut of_lanes = [u32x4::splat(self.simd, 0); $lanes];
+                    for (of_lane, lane) in of_lanes.iter_mut().zip(lanes) {
+                        *of_lane = u32x4::load_array(self.simd, lane[r]);
+                    }
+                    *row = $transpose(of_lanes);
+                }
+                rows
             }
             #[inline(always)]
             fn uniform(self, buffer: Buffer, index: u32) -> Self::U {
@@ -227,40 +257,18 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn columns(self, row: impl Fn(usize) -> [u32; 4]) -> [Self::U; 4] {
-                const ROWS: usize = $lanes / 4;
-                let quarter = |first: usize| {
-                    let mut words = [0; $lanes];
-                    for k in 0..ROWS {
-                        words[4 * k..4 * k + 4].copy_from_slice(&row(first * ROWS + k));
-                    }
-                    $word::load_array(self.simd, words)
-                };
-                // Even columns, then every second of them, in the order of the rows.
-                let (a, b) = (quarter(0), quarter(1));
-                let (c, d) = (quarter(2), quarter(3));
-                let (xz_low, yw_low) = (a.unzip_low(b), a.unzip_high(b));
-                let (xz_high, yw_high) = (c.unzip_low(d), c.unzip_high(d));
-                [
-                    xz_low.unzip_low(xz_high),
-                    yw_low.unzip_low(yw_high),
-                    xz_low.unzip_high(xz_high),
-                    yw_low.unzip_high(yw_high),
-                ]
+                let mut rows = [u32x4::splat(self.simd, 0); $lanes];
+                for (lane, of_lane) in rows.iter_mut().enumerate() {
+                    *of_lane = u32x4::load_array(self.simd, row(lane));
+                }
+                $transpose(rows)
             }
             #[inline(always)]
-            fn rows(self, [x, y, z, w]: [Self::U; 4]) -> [[u32; 4]; MAX_LANES] {
-                let (xz_low, xz_high) = (x.zip_low(z), x.zip_high(z));
-                let (yw_low, yw_high) = (y.zip_low(w), y.zip_high(w));
-                let quarters = [
-                    xz_low.zip_low(yw_low),
-                    xz_low.zip_high(yw_low),
-                    xz_high.zip_low(yw_high),
-                    xz_high.zip_high(yw_high),
-                ];
+            fn rows(self, columns: [Self::U; 4]) -> [[u32; 4]; MAX_LANES] {
                 let mut rows = [[0; 4]; MAX_LANES];
                 let words = rows.as_flattened_mut();
-                for (quarter, words) in quarters.iter().zip(words.chunks_exact_mut($lanes)) {
-                    quarter.store_slice(words);
+                for (some, words) in rows_of(columns).iter().zip(words.chunks_exact_mut($lanes)) {
+                    some.store_slice(words);
                 }
                 rows
             }
@@ -268,6 +276,56 @@ macro_rules! lanes {
     };
 }
 
-lanes!(Lanes4, 4, f32x4, u32x4, mask32x4);
-lanes!(Lanes8, 8, f32x8, u32x8, mask32x8);
-lanes!(Lanes16, 16, f32x16, u32x16, mask32x16);
+lanes!(Lanes4, 4, f32x4, u32x4, mask32x4, transpose4);
+lanes!(Lanes8, 8, f32x8, u32x8, mask32x8, transpose8);
+lanes!(Lanes16, 16, f32x16, u32x16, mask32x16, transpose16);
+
+/// The inverse of [`columns`].
+#[inline(always)]
+fn rows_of<S: Simd, V: SimdBase<S>>([x, y, z, w]: [V; 4]) -> [V; 4] {
+    let (low, high) = ((x.zip_low(z), y.zip_low(w)), (x.zip_high(z), y.zip_high(w)));
+    [
+        low.0.zip_low(low.1),
+        low.0.zip_high(low.1),
+        high.0.zip_low(high.1),
+        high.0.zip_high(high.1),
+    ]
+}
+
+/// Row `r` of four vectors that hold one row of four a lane, in the order of lanes, turned into four vectors of one
+/// word a lane.
+#[inline(always)]
+fn columns<S: Simd, V: SimdBase<S>>([a, b, c, d]: [V; 4]) -> [V; 4] {
+    let (xz, yw) = (
+        (a.unzip_low(b), c.unzip_low(d)),
+        (a.unzip_high(b), c.unzip_high(d)),
+    );
+    [
+        xz.0.unzip_low(xz.1),
+        yw.0.unzip_low(yw.1),
+        xz.0.unzip_high(xz.1),
+        yw.0.unzip_high(yw.1),
+    ]
+}
+
+#[inline(always)]
+fn transpose4<S: Simd>(rows: [u32x4<S>; 4]) -> [u32x4<S>; 4] {
+    columns(rows)
+}
+
+#[inline(always)]
+fn transpose8<S: Simd>([a, b, c, d, e, f, g, h]: [u32x4<S>; 8]) -> [u32x8<S>; 4] {
+    columns([a.combine(b), c.combine(d), e.combine(f), g.combine(h)])
+}
+
+#[inline(always)]
+fn transpose16<S: Simd>(
+    [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]: [u32x4<S>; 16],
+) -> [u32x16<S>; 4] {
+    columns([
+        a.combine(b).combine(c.combine(d)),
+        e.combine(f).combine(g.combine(h)),
+        i.combine(j).combine(k.combine(l)),
+        m.combine(n).combine(o.combine(p)),
+    ])
+}

@@ -77,31 +77,27 @@ impl<T> Unsigned for T where
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
 impl<T> Mask for T where T: Copy + BitAnd<Output = T> + BitOr<Output = T> + Not<Output = T> {}
 
-/// The buffers a formula can read. Each is an array of 32-bit words; see `scene` for their layouts.
+/// The buffers a formula can read. Each is an array of 32-bit words; four consecutive ones make a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(usize)]
 pub enum Buffer {
-    /// Corners: three vertex numbers a triangle.
+    /// Three rows a triangle: a corner's x, y, z each, and behind them the first word of the material's parameters,
+    /// the light's number or `u32::MAX`, and 0.
     Triangles,
-    /// x, y, z a vertex.
-    Positions,
-    /// x, y, z a vertex.
+    /// Its program, a triangle.
+    TrianglePrograms,
+    /// The numbers of three vertices and 0, a triangle. Only where attributes are read.
+    Indices,
+    /// x, y, z, 0 a vertex.
     Normals,
     /// x, y, z, sign a vertex.
     Tangents,
-    /// u, v a vertex.
-    Uv0,
-    /// u, v a vertex.
-    Uv1,
+    /// Two sets of texture coordinates, u, v, u, v a vertex.
+    Uvs,
     /// r, g, b, a a vertex.
     Colors,
-    /// Its program, a triangle.
-    TrianglePrograms,
-    /// First word of its material's parameters, a triangle.
-    TriangleParams,
-    /// Its light, or `u32::MAX`, a triangle. Only where surfaces emit.
-    TriangleLights,
-    /// Parameter blocks of the materials.
+    /// Parameter blocks of the materials: a number a word, and a colour, an image's slot, each half of a texture
+    /// transform a row of three words and 0.
     Params,
     /// Texels of all images.
     Texels,
@@ -124,15 +120,12 @@ impl Buffer {
     /// All of them, in order.
     pub const ALL: [Self; Self::COUNT] = [
         Self::Triangles,
-        Self::Positions,
+        Self::TrianglePrograms,
+        Self::Indices,
         Self::Normals,
         Self::Tangents,
-        Self::Uv0,
-        Self::Uv1,
+        Self::Uvs,
         Self::Colors,
-        Self::TrianglePrograms,
-        Self::TriangleParams,
-        Self::TriangleLights,
         Self::Params,
         Self::Texels,
         Self::Lights,
@@ -169,7 +162,17 @@ impl<'a> Buffers<'a> {
     /// One word; 0 outside the buffer, where only switched-off lanes read.
     #[inline(always)]
     pub fn word(&self, buffer: Buffer, index: u32) -> u32 {
-        self.get(buffer).get(index as usize).copied().unwrap_or(0)
+        // A choice of addresses, not of paths: lanes read without branches.
+        *self.get(buffer).get(index as usize).unwrap_or(&0)
+    }
+
+    /// `N` rows of four words each from word `first` on; 0 where they do not all lie within the buffer.
+    #[inline(always)]
+    pub fn rows<const N: usize>(&self, buffer: Buffer, first: u32) -> &'a [[u32; 4]; N] {
+        let first = first as usize;
+        let words = self.get(buffer).get(first..first.saturating_add(4 * N));
+        let rows = words.and_then(|words| words.as_chunks().0.first_chunk());
+        rows.unwrap_or(const { &[[0; 4]; N] })
     }
 }
 
@@ -238,12 +241,27 @@ pub trait Domain: Copy {
     )]
     fn from_bits(self, a: Self::U) -> Self::F;
 
+    /// The bits in the opposite order.
+    fn reverse_bits(self, a: Self::U) -> Self::U;
+
     /// One word of a buffer.
     fn load(self, buffer: Buffer, index: Self::U) -> Self::U;
     /// One word of a buffer as a real number.
     #[inline(always)]
     fn load_real(self, buffer: Buffer, index: Self::U) -> Self::F {
         self.from_bits(self.load(buffer, index))
+    }
+    /// `N` rows of four consecutive words each from word `first` on. The rows of one lane lie within the buffer, all
+    /// of them, or outside it, all of them: then they are 0, and only switched-off lanes read there.
+    #[inline(always)]
+    fn load_rows<const N: usize>(self, buffer: Buffer, first: Self::U) -> [[Self::U; 4]; N] {
+        let mut rows = [[first; 4]; N];
+        for (r, row) in rows.iter_mut().enumerate() {
+            for (k, word) in row.iter_mut().enumerate() {
+                *word = self.load(buffer, first + self.uint((4 * r + k) as u32));
+            }
+        }
+        rows
     }
     /// The same word for all lanes.
     fn uniform(self, buffer: Buffer, index: u32) -> Self::U;

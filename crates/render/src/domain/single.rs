@@ -110,8 +110,22 @@ macro_rules! single {
                 $real::from(f32::from_bits(a.0))
             }
             #[inline(always)]
+            fn reverse_bits(self, a: Uint) -> Uint {
+                Uint(a.0.reverse_bits())
+            }
+            #[inline(always)]
             fn load(self, buffer: Buffer, index: Uint) -> Uint {
                 Uint(self.buffers.word(buffer, index.0))
+            }
+            #[inline(always)]
+            fn load_rows<const N: usize>(self, buffer: Buffer, first: Uint) -> [[Uint; 4]; N] {
+                let mut rows = [[Uint(0); 4]; N];
+                for (row, from) in rows.iter_mut().zip(self.buffers.rows::<N>(buffer, first.0)) {
+                    for (word, &from) in row.iter_mut().zip(from) {
+                        *word = Uint(from);
+                    }
+                }
+                rows
             }
             #[inline(always)]
             fn uniform(self, buffer: Buffer, index: u32) -> Uint {

@@ -4,7 +4,7 @@
 
 use super::{LightKind, LightSample};
 use crate::domain::{Buffer, Domain};
-use crate::math::warp;
+use crate::math::{Vec3, warp};
 use crate::surface::{Attributes, Surface, offset_point};
 use crate::texture::ColorSource;
 
@@ -19,12 +19,11 @@ pub struct Area<E> {
 
 impl<D: Domain, E: ColorSource<D>> LightKind<D> for Area<E> {
     #[inline(always)]
-    fn sample(&self, d: D, record: D::U, from: &Surface<D>, u: [D::F; 3]) -> LightSample<D> {
-        let prim = d.load(Buffer::Lights, record + d.uint(1));
-        let both_sides = d.load(Buffer::Lights, record + d.uint(2));
+    fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D> {
+        let [[_, prim, both_sides, _]] = d.load_rows(Buffer::Lights, record);
         let (b1, b2) = warp::triangle(d, [u[0], u[1]]);
-        let there = Surface::seen_from(d, self.attributes, prim, [b1, b2], from.point);
-        let towards = there.point - from.point;
+        let there = Surface::seen_from(d, self.attributes, prim, [b1, b2], from);
+        let towards = there.point - from;
         let distance = d.max(towards.length(d), d.lit(1e-18));
         let emits = there.front | d.eq_u(both_sides, d.uint(1));
         let faces = d.lt(d.lit(0.0), there.cos_geometric);

@@ -5,15 +5,15 @@
 //! that shines can be sampled; the position within the texel is uniform.
 //!
 //! [`Buffer::Environment`]: [`HEADER`] words — width, height, first word of the image among the texels, strength
-//! (`f32`), cosine and sine of the rotation, the light's number, 0 — then for each texel three words: threshold
-//! (`f32`), alias, and the density (`f32`) over the unit square of image coordinates.
+//! (`f32`), cosine and sine of the rotation, the light's number, 0 — then for each texel a row: threshold (`f32`), alias,
+//! and the densities (`f32`) over the unit square of image coordinates in the texel and in its alias.
 
 use super::{ALIAS_ENTRY, Background, LightKind, LightSample, pick_probability, resolve_alias};
 use crate::domain::{Buffer, Domain};
 use crate::math::elementary::{atan2, sincos_turns};
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
-use crate::surface::Surface;
+
 use crate::texture::{Bilinear, Clamp, Filtering, LinearFloat, Repeat, TexelFormat, Wrapping};
 
 /// Words before the alias table.
@@ -86,17 +86,15 @@ fn row_and_column<D: Domain>(d: D, texel: D::U, width: D::U) -> (D::F, D::F) {
     (d.to_real(row), d.to_real(texel - row * width))
 }
 
-/// Density per steradian, from the density over the image at texel `slot`.
+/// Density per steradian, from the density over the image.
 #[inline(always)]
-fn solid_angle_pdf<D: Domain>(d: D, slot: D::U, sin_theta: D::F) -> D::F {
-    let entry = slot * d.uint(ALIAS_ENTRY) + d.uint(HEADER + 2);
-    let over_image = d.load_real(Buffer::Environment, entry);
+fn solid_angle_pdf<D: Domain>(d: D, over_image: D::F, sin_theta: D::F) -> D::F {
     over_image / d.max(sin_theta * d.lit(2.0 * PI * PI), d.lit(1e-9))
 }
 
 impl<D: Domain> LightKind<D> for Environment {
     #[inline(always)]
-    fn sample(&self, d: D, _: D::U, _: &Surface<D>, u: [D::F; 3]) -> LightSample<D> {
+    fn sample(&self, d: D, _: D::U, _: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D> {
         let (width, columns, rows) = size(d);
         let one = d.lit(1.0);
         let (x, y) = (u[0] * columns, u[1] * rows);
@@ -105,7 +103,7 @@ impl<D: Domain> LightKind<D> for Environment {
             d.min(d.floor(y), rows - one),
         );
         let slot = d.to_uint(row) * width + d.to_uint(column);
-        let texel = resolve_alias(d, Buffer::Environment, HEADER, slot, u[2]);
+        let (texel, density) = resolve_alias(d, Buffer::Environment, HEADER, slot, u[2]);
         let (row, column) = row_and_column(d, texel, width);
         let place = [
             (column + (x - d.floor(x))) / columns,
@@ -117,7 +115,7 @@ impl<D: Domain> LightKind<D> for Environment {
             position: wi,
             infinite: d.truth(true),
             radiance: radiance(d, place),
-            pdf: solid_angle_pdf(d, texel, sin_theta),
+            pdf: solid_angle_pdf(d, density, sin_theta),
             delta: d.truth(false),
         }
     }
@@ -129,9 +127,11 @@ impl<D: Domain> LightKind<D> for Environment {
         let column = d.to_uint(Clamp.wrap(d, d.floor(place[0] * columns), columns));
         let row = d.to_uint(Clamp.wrap(d, d.floor(place[1] * rows), rows));
         let pick = pick_probability(d, d.uniform(Buffer::Environment, 6));
+        let entry = (row * width + column) * d.uint(ALIAS_ENTRY) + d.uint(HEADER);
+        let density = d.load_real(Buffer::Environment, entry + d.uint(2));
         Some(Background {
             radiance: radiance(d, place),
-            pdf: solid_angle_pdf(d, row * width + column, sin_theta) * pick,
+            pdf: solid_angle_pdf(d, density, sin_theta) * pick,
         })
     }
 }

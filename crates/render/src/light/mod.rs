@@ -3,9 +3,10 @@
 //! A scene's kinds of lights are a type list, `(A, (B, ()))`, so that a renderer contains the kinds that its
 //! scene has and no others. One light is picked from an alias table by its power, then sampled by its kind.
 //!
-//! [`Buffer::LightAlias`]: word 0 the number of lights n, then for each light three words: threshold (`f32`), alias,
-//! and the probability (`f32`) with which it is picked. [`Buffer::Lights`]: [`RECORD`] words a light; word 0 is the
-//! kind's position in the list, the rest is the kind's affair.
+//! [`Buffer::LightAlias`]: a row whose word 0 is the number of lights n, then the alias table: for each light a row of
+//! threshold (`f32`), alias, and the probabilities (`f32`) with which the light and its alias are picked.
+//! [`Buffer::Lights`]: [`RECORD`] words a light; word 0 is the kind's position in the list, the rest is the kind's
+//! affair.
 
 mod area;
 pub mod environment;
@@ -17,13 +18,14 @@ pub use punctual::{Directional, Point, Spot};
 
 use crate::domain::{Buffer, Bundle, Domain};
 use crate::math::{Color, Vec3};
-use crate::surface::Surface;
 
 /// Words of a light's record.
-pub const RECORD: u32 = 16;
+pub const RECORD: u32 = 12;
 /// Words of an entry of an alias table.
-pub const ALIAS_ENTRY: u32 = 3;
-/// In [`Buffer::TriangleLights`]: the triangle is no light.
+pub const ALIAS_ENTRY: u32 = 4;
+/// Words before the entries of the lights' alias table.
+pub const ALIAS_HEADER: u32 = 4;
+/// In [`Buffer::Triangles`]: the triangle is no light.
 pub const NO_LIGHT: u32 = u32::MAX;
 
 /// Light arriving at a point from one sampled direction.
@@ -69,7 +71,7 @@ pub struct Background<D: Domain> {
 /// A kind of light.
 pub trait LightKind<D: Domain> {
     /// Samples the light whose record starts at word `record` for the point `from`.
-    fn sample(&self, d: D, record: D::U, from: &Surface<D>, u: [D::F; 3]) -> LightSample<D>;
+    fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D>;
 
     /// What a ray in the unit direction `dir` that hits nothing sees of lights of this kind.
     fn background(&self, _: D, _dir: Vec3<D::F>) -> Option<Background<D>> {
@@ -108,7 +110,7 @@ pub trait LightKinds<D: Domain> {
         d: D,
         kind: KindNumber<D::U>,
         record: D::U,
-        from: &Surface<D>,
+        from: Vec3<D::F>,
         u: [D::F; 3],
     ) -> LightSample<D>;
     /// The background of the first kind that has one.
@@ -126,7 +128,7 @@ impl<D: Domain> LightKinds<D> for () {
         d: D,
         _: KindNumber<D::U>,
         _: D::U,
-        _: &Surface<D>,
+        _: Vec3<D::F>,
         _: [D::F; 3],
     ) -> LightSample<D> {
         let zero = Vec3::splat(d.lit(0.0));
@@ -156,7 +158,7 @@ impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
         d: D,
         kind: KindNumber<D::U>,
         record: D::U,
-        from: &Surface<D>,
+        from: Vec3<D::F>,
         u: [D::F; 3],
     ) -> LightSample<D> {
         if self.1.is_empty() {
@@ -187,7 +189,7 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
         d: D,
         kind: KindNumber<D::U>,
         record: D::U,
-        from: &Surface<D>,
+        from: Vec3<D::F>,
         u: [D::F; 3],
     ) -> LightSample<D> {
         match self {
@@ -222,9 +224,13 @@ pub fn pick<D: Domain>(d: D, u: D::F) -> Pick<D> {
     let count = d.to_real(d.uniform(Buffer::LightAlias, 0));
     let place = u * count;
     let slot = d.min(d.floor(place), count - d.lit(1.0));
-    let light = resolve_alias(d, Buffer::LightAlias, 1, d.to_uint(slot), place - slot);
-    let entry = light * d.uint(ALIAS_ENTRY) + d.uint(1);
-    let probability = d.load_real(Buffer::LightAlias, entry + d.uint(2));
+    let (light, probability) = resolve_alias(
+        d,
+        Buffer::LightAlias,
+        ALIAS_HEADER,
+        d.to_uint(slot),
+        place - slot,
+    );
     let record = light * d.uint(RECORD);
     Pick {
         kind: d.load(Buffer::Lights, record),
@@ -234,45 +240,51 @@ pub fn pick<D: Domain>(d: D, u: D::F) -> Pick<D> {
 }
 
 /// Picks a light with `u[0]` and samples it with the other three numbers. The density includes the pick.
-#[inline(always)]
+///
+/// It is never inlined: all programs of a scene share one copy, which halves what there is to compile and to keep in the
+/// instruction cache. The values that enter and leave through memory cost less than the sampling by far.
+#[inline(never)]
 pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
     d: D,
     lights: &L,
-    from: &Surface<D>,
+    from: Vec3<D::F>,
     u: [D::F; 4],
 ) -> LightSample<D> {
-    let Pick {
-        kind,
-        record,
-        probability,
-    } = pick(d, u[0]);
-    let sample = lights.sample(
-        d,
-        KindNumber { kind, first: 0 },
-        record,
-        from,
-        [u[1], u[2], u[3]],
-    );
-    // A delta light's "density" of 1 turns into the probability of its pick; the estimator is the same.
-    LightSample {
-        pdf: sample.pdf * probability,
-        ..sample
-    }
+    d.vectorize(
+        #[inline(always)]
+        || {
+            let Pick {
+                kind,
+                record,
+                probability,
+            } = pick(d, u[0]);
+            let kind = KindNumber { kind, first: 0 };
+            let sample = lights.sample(d, kind, record, from, [u[1], u[2], u[3]]);
+            // A delta light's "density" of 1 turns into the probability of its pick; the estimator is the same.
+            LightSample {
+                pdf: sample.pdf * probability,
+                ..sample
+            }
+        },
+    )
 }
 
 /// The probability of picking a light.
 #[inline(always)]
 pub fn pick_probability<D: Domain>(d: D, light: D::U) -> D::F {
-    d.load_real(Buffer::LightAlias, light * d.uint(ALIAS_ENTRY) + d.uint(3))
+    let entry = light * d.uint(ALIAS_ENTRY) + d.uint(ALIAS_HEADER);
+    d.load_real(Buffer::LightAlias, entry + d.uint(2))
 }
 
-/// An alias table's answer for a slot and a number in [0, 1): the slot itself, or its alias.
+/// An alias table's answer for a slot and a number in [0, 1): the slot itself, or its alias; and the density that the
+/// table says of it.
 #[inline(always)]
-fn resolve_alias<D: Domain>(d: D, buffer: Buffer, first: u32, slot: D::U, u: D::F) -> D::U {
+fn resolve_alias<D: Domain>(d: D, buffer: Buffer, first: u32, slot: D::U, u: D::F) -> (D::U, D::F) {
     let entry = slot * d.uint(ALIAS_ENTRY) + d.uint(first);
-    let threshold = d.load_real(buffer, entry);
-    let alias = d.load(buffer, entry + d.uint(1));
-    d.select_u(d.lt(u, threshold), slot, alias)
+    let [[threshold, alias, of_slot, of_alias]] = d.load_rows(buffer, entry);
+    let stays = d.lt(u, d.from_bits(threshold));
+    let density = d.select_u(stays, of_slot, of_alias);
+    (d.select_u(stays, slot, alias), d.from_bits(density))
 }
 
 /// Multiple importance sampling's power heuristic, in the form that neither overflows nor divides 0 by 0

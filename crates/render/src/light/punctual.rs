@@ -1,13 +1,11 @@
 //! Point, spot and directional lights (KHR_lights_punctual).
 //!
-//! Records: kind, position (or, directional, the unit direction towards the light), intensity; and for spots the
-//! unit axis, then scale and offset of the cosine: `clamp(cos·scale + offset)²` as the extension recommends.
+//! Records: kind, position (or, directional, the unit direction towards the light); intensity, scale; the unit axis,
+//! offset. Axis, scale and offset are of spots alone: `clamp(cos·scale + offset)²` as the extension recommends.
 
 use super::{LightKind, LightSample};
 use crate::domain::{Buffer, Domain};
 use crate::math::Vec3;
-use crate::math::vec3::vec3;
-use crate::surface::Surface;
 
 /// Shines everywhere from a point.
 #[derive(Clone, Copy, Debug)]
@@ -19,39 +17,61 @@ pub struct Spot;
 #[derive(Clone, Copy, Debug)]
 pub struct Directional;
 
-#[inline(always)]
-fn vector<D: Domain>(d: D, record: D::U, first: u32) -> Vec3<D::F> {
-    let [x, y, z] = [0, 1, 2].map(|k| d.load_real(Buffer::Lights, record + d.uint(first + k)));
-    vec3(x, y, z)
+/// A record: position, intensity and scale, axis and offset.
+struct Record<D: Domain> {
+    position: Vec3<D::F>,
+    intensity: Vec3<D::F>,
+    scale: D::F,
+    axis: Vec3<D::F>,
+    offset: D::F,
 }
 
-impl<D: Domain> LightKind<D> for Point {
+impl<D: Domain> Record<D> {
     #[inline(always)]
-    fn sample(&self, d: D, record: D::U, from: &Surface<D>, _: [D::F; 3]) -> LightSample<D> {
-        let position = vector(d, record, 1);
-        let towards = position - from.point;
+    fn load(d: D, first: D::U) -> Self {
+        let [[_, x, y, z], intensity, axis] = d.load_rows(Buffer::Lights, first);
+        Self {
+            position: Vec3::from_row(d, [x, y, z, first]),
+            intensity: Vec3::from_row(d, intensity),
+            scale: d.from_bits(intensity[3]),
+            axis: Vec3::from_row(d, axis),
+            offset: d.from_bits(axis[3]),
+        }
+    }
+
+    /// The light of the record, shining everywhere from its position.
+    #[inline(always)]
+    fn from_position(&self, d: D, to: Vec3<D::F>) -> LightSample<D> {
+        let towards = self.position - to;
         // Finite even where the point lies on the light (hard case L-11).
         let distance = d.max(towards.length(d), d.lit(1e-6));
         let one = d.lit(1.0);
         LightSample {
             wi: towards.scale(one / distance),
-            position,
+            position: self.position,
             infinite: d.truth(false),
-            radiance: vector(d, record, 4).scale(one / (distance * distance)),
+            radiance: self.intensity.scale(one / (distance * distance)),
             pdf: one,
             delta: d.truth(true),
         }
     }
 }
 
+impl<D: Domain> LightKind<D> for Point {
+    #[inline(always)]
+    fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
+        Record::load(d, record).from_position(d, from)
+    }
+}
+
 impl<D: Domain> LightKind<D> for Spot {
     #[inline(always)]
-    fn sample(&self, d: D, record: D::U, from: &Surface<D>, u: [D::F; 3]) -> LightSample<D> {
-        let everywhere = Point.sample(d, record, from, u);
-        let cos = -vector(d, record, 7).dot(d, everywhere.wi);
-        let scale = d.load_real(Buffer::Lights, record + d.uint(10));
-        let offset = d.load_real(Buffer::Lights, record + d.uint(11));
-        let falloff = d.min(d.max(d.fma(cos, scale, offset), d.lit(0.0)), d.lit(1.0));
+    fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
+        let record = Record::load(d, record);
+        let everywhere = record.from_position(d, from);
+        let cos = -record.axis.dot(d, everywhere.wi);
+        let falloff = d.fma(cos, record.scale, record.offset);
+        let falloff = d.min(d.max(falloff, d.lit(0.0)), d.lit(1.0));
         LightSample {
             radiance: everywhere.radiance.scale(falloff * falloff),
             ..everywhere
@@ -61,13 +81,13 @@ impl<D: Domain> LightKind<D> for Spot {
 
 impl<D: Domain> LightKind<D> for Directional {
     #[inline(always)]
-    fn sample(&self, d: D, record: D::U, _: &Surface<D>, _: [D::F; 3]) -> LightSample<D> {
-        let towards = vector(d, record, 1);
+    fn sample(&self, d: D, record: D::U, _: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
+        let record = Record::load(d, record);
         LightSample {
-            wi: towards,
-            position: towards,
+            wi: record.position,
+            position: record.position,
             infinite: d.truth(true),
-            radiance: vector(d, record, 4),
+            radiance: record.intensity,
             pdf: d.lit(1.0),
             delta: d.truth(true),
         }

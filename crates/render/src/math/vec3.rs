@@ -31,6 +31,12 @@ impl<F: Real> Vec3<F> {
         vec3(value, value, value)
     }
 
+    /// The first three words of a row of a buffer.
+    #[inline(always)]
+    pub fn from_row<D: Domain<F = F>>(d: D, [x, y, z, _]: [D::U; 4]) -> Self {
+        vec3(d.from_bits(x), d.from_bits(y), d.from_bits(z))
+    }
+
     /// The components, transformed one by one.
     #[inline(always)]
     pub fn map(self, f: impl Fn(F) -> F) -> Self {

@@ -22,7 +22,7 @@ pub type ImageNode = Image<AnyWrap, AnyWrap, AnyFilter, AnyFormat>;
 pub enum ColorNode {
     /// Printed into the program.
     Const([f32; 3]),
-    /// Three words of the parameter block.
+    /// A row of the parameter block.
     Param(u32),
     /// The vertex colour.
     VertexColor,

@@ -12,12 +12,12 @@ impl<D: Domain> Sampler<D> for Sobol {
     #[inline(always)]
     fn pair(&self, d: D, key: SampleKey<D::U>, dimension: D::U) -> [D::F; 2] {
         let seed = hash(d, key.pixel ^ hash(d, dimension));
-        let reversed = reverse_bits(d, key.index);
-        let shuffled = reverse_bits(d, owen(d, reversed, seed));
+        let reversed = d.reverse_bits(key.index);
+        let shuffled = d.reverse_bits(owen(d, reversed, seed));
         // Scrambling works on reversed bits and Sobol's first dimension is the index with its bits reversed:
         // two of the reversals cancel, in both dimensions.
-        let x = reverse_bits(d, owen(d, shuffled, hash(d, seed + d.uint(1))));
-        let y = reverse_bits(d, owen(d, pascal(d, shuffled), hash(d, seed + d.uint(2))));
+        let x = d.reverse_bits(owen(d, shuffled, hash(d, seed + d.uint(1))));
+        let y = d.reverse_bits(owen(d, pascal(d, shuffled), hash(d, seed + d.uint(2))));
         [unit(d, x), unit(d, y)]
     }
 }
@@ -40,15 +40,4 @@ fn owen<D: Domain>(d: D, x: D::U, seed: D::U) -> D::U {
     let x = x * ((seed >> 16) | d.uint(1));
     let x = x ^ (x * d.uint(0x0552_6c56));
     x ^ (x * d.uint(0x53a2_2864))
-}
-
-#[inline(always)]
-fn reverse_bits<D: Domain>(d: D, x: D::U) -> D::U {
-    let swap =
-        |x: D::U, by: u32, mask: u32| ((x >> by) & d.uint(mask)) | ((x & d.uint(mask)) << by);
-    let x = swap(x, 1, 0x5555_5555);
-    let x = swap(x, 2, 0x3333_3333);
-    let x = swap(x, 4, 0x0f0f_0f0f);
-    let x = swap(x, 8, 0x00ff_00ff);
-    (x >> 16) | (x << 16)
 }

@@ -1,15 +1,14 @@
 //! Image textures: nearest and bilinear, repeated, mirrored or clamped, in three texel formats.
 //!
-//! What an image is (its place among the texels, width, height) is data: three words of the material's
-//! parameter block. How it is read (wrapping, filtering, format, coordinates) is structure: type parameters, for
+//! What an image is (its place among the texels, width, height) is data: a row of the material's parameter block. How it is read (wrapping, filtering, format, coordinates) is structure: type parameters, for
 //! which the `Any…` enumerations stand in where a renderer is interpreted.
 //! Texel centres lie at half-integers; row 0 is at v = 0.
 
 use super::srgb;
 use super::{ColorSource, ScalarSource};
 use crate::domain::{Buffer, Domain};
-use crate::math::Color;
 use crate::math::vec3::vec3;
+use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 
 /// How coordinates outside the image are read.
@@ -151,8 +150,8 @@ impl TexelFormat for LinearFloat {
     }
     #[inline(always)]
     fn color<D: Domain>(&self, d: D, word: D::U) -> Color<D::F> {
-        let [r, g, b] = [0, 1, 2].map(|k| d.load_real(Buffer::Texels, word + d.uint(k)));
-        vec3(r, g, b)
+        let [texel] = d.load_rows(Buffer::Texels, word);
+        Vec3::from_row(d, texel)
     }
     #[inline(always)]
     fn channel<D: Domain>(&self, d: D, word: D::U, channel: u32) -> D::F {
@@ -281,7 +280,8 @@ impl Filtering for AnyFilter {
 pub struct UvMap {
     /// 0 or 1.
     pub set: usize,
-    /// Offset, in the parameter block, of the six numbers of KHR_texture_transform; `None` is the identity.
+    /// Offset, in the parameter block, of the matrix of KHR_texture_transform: two rows of three numbers and 0.
+    /// `None` is the identity.
     pub transform: Option<u32>,
 }
 
@@ -291,12 +291,15 @@ impl UvMap {
         let [u, v] = surface.uv[self.set];
         match self.transform {
             None => [u, v],
-            Some(offset) => [0, 3].map(|row| {
-                let m = [0, 1, 2].map(|k| {
-                    d.load_real(Buffer::Params, surface.params + d.uint(offset + row + k))
-                });
-                d.fma(m[0], u, d.fma(m[1], v, m[2]))
-            }),
+            Some(offset) => {
+                let first = surface.params + d.uint(offset);
+                let [x, y] = d.load_rows(Buffer::Params, first);
+                let apply = |row: [D::U; 4]| {
+                    let m = Vec3::from_row(d, row);
+                    d.fma(m.x, u, d.fma(m.y, v, m.z))
+                };
+                [apply(x), apply(y)]
+            }
         }
     }
 }
@@ -304,7 +307,7 @@ impl UvMap {
 /// An image texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Image<U, V, F, T> {
-    /// Offset in the parameter block of: first word among the texels, width, height.
+    /// Offset in the parameter block of: first word among the texels, width, height, 0.
     pub slot: u32,
     /// Coordinates.
     pub uv: UvMap,
@@ -327,8 +330,8 @@ impl<U: Wrapping, V: Wrapping, F: Filtering, T: TexelFormat> Image<U, V, F, T> {
         fetch: impl Fn(D::U) -> S,
         lerp: impl Fn(S, S, D::F) -> S,
     ) -> S {
-        let word = |k: u32| d.load(Buffer::Params, surface.params + d.uint(self.slot + k));
-        let (first, width, height) = (word(0), word(1), word(2));
+        let slot = surface.params + d.uint(self.slot);
+        let [[first, width, height, _]] = d.load_rows(Buffer::Params, slot);
         let (columns, rows) = (d.to_real(width), d.to_real(height));
         let [u, v] = self.uv.apply(d, surface);
         let texel = |x: D::F, y: D::F| {

@@ -14,7 +14,7 @@ pub use image::{
 pub use srgb::{srgb_code, srgb_table};
 
 use crate::domain::{Buffer, Domain};
-use crate::math::vec3::{lit3, vec3};
+use crate::math::vec3::lit3;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 
@@ -54,9 +54,8 @@ pub struct Param(pub u32);
 impl<D: Domain> ColorSource<D> for Param {
     #[inline(always)]
     fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F> {
-        let [r, g, b] =
-            [0, 1, 2].map(|k| d.load_real(Buffer::Params, surface.params + d.uint(self.0 + k)));
-        vec3(r, g, b)
+        let [row] = d.load_rows(Buffer::Params, surface.params + d.uint(self.0));
+        Vec3::from_row(d, row)
     }
 }
 impl<D: Domain> ScalarSource<D> for Param {

@@ -103,7 +103,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<S> {
         let Vertex { surface, bsdf, .. } = *vertex;
         let [pick, extra] = self.pair(d, path.key, vertex.depth, LIGHT_PICK);
         let place = self.pair(d, path.key, vertex.depth, LIGHT_PLACE);
-        let sample = light::sample(d, lights, surface, [pick, place[0], place[1], extra]);
+        let sample = light::sample(d, lights, surface.point, [pick, place[0], place[1], extra]);
 
         let wo = surface.frame.to_local(d, vertex.wo);
         let wi = surface.frame.to_local(d, sample.wi);

@@ -3,6 +3,8 @@
 
 use residual_render::domain::tape::{Function, Node, Op, Statement};
 use residual_render::domain::{Buffer, Domain};
+use residual_render::light::environment::HEADER;
+use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD};
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
 
@@ -58,27 +60,27 @@ pub(crate) fn scene() -> SceneData {
         let words = (0..words).map(|_| random.between(low, high).to_bits());
         data.buffer_mut(buffer).extend(words);
     };
-    fill(Buffer::Positions, 3 * vertices, -2.0, 2.0);
-    fill(Buffer::Normals, 3 * vertices, -1.0, 1.0);
+    fill(Buffer::Normals, 4 * vertices, -1.0, 1.0);
     fill(Buffer::Tangents, 4 * vertices, -1.0, 1.0);
-    fill(Buffer::Uv0, 2 * vertices, -2.0, 2.0);
-    fill(Buffer::Uv1, 2 * vertices, -2.0, 2.0);
+    fill(Buffer::Uvs, 4 * vertices, -2.0, 2.0);
     fill(Buffer::Colors, 4 * vertices, 0.0, 1.0);
     fill(Buffer::Params, BLOCK * TRIANGLES, 0.05, 1.0);
     fill(Buffer::Texels, 4 * 64, 0.0, 1.0);
-    fill(Buffer::Lights, 16 * 5, -1.0, 1.0);
+    fill(Buffer::Lights, RECORD * 5, -1.0, 1.0);
     fill(Buffer::Camera, 12, -1.0, 1.0);
-    fill(Buffer::LightAlias, 1 + 3 * 5, 0.05, 1.0);
-    fill(Buffer::Environment, 8 + 3 * 12, 0.1, 1.0);
-    data.buffer_mut(Buffer::Triangles).extend(0..vertices);
+    fill(Buffer::LightAlias, ALIAS_HEADER + ALIAS_ENTRY * 5, 0.05, 1.0);
+    fill(Buffer::Environment, HEADER + ALIAS_ENTRY * 12, 0.1, 1.0);
     data.buffer_mut(Buffer::Tables)
         .extend(srgb_table().map(f32::to_bits));
     for triangle in 0..TRIANGLES {
-        data.buffer_mut(Buffer::TriangleParams)
-            .push(BLOCK * triangle);
-        data.buffer_mut(Buffer::TrianglePrograms).push(0);
-        data.buffer_mut(Buffer::TriangleLights)
-            .push(if triangle == 0 { u32::MAX } else { 0 });
+        let corners = [[0; 3]; 3].map(|corner| corner.map(|_| random.between(-2.0, 2.0)));
+        data.push_triangle(corners, 0, BLOCK * triangle);
+        if triangle > 0 {
+            data.set_light(triangle as usize, 0);
+        }
+        let first = 3 * triangle;
+        data.buffer_mut(Buffer::Indices)
+            .extend([first, first + 1, first + 2, 0]);
         for vertex in 0..3 {
             let sign = if triangle % 2 == 0 { 1.0_f32 } else { -1.0 };
             let word = 4 * (3 * triangle + vertex) + 3;
@@ -89,10 +91,10 @@ pub(crate) fn scene() -> SceneData {
     }
     for light in 0..5 {
         let words = data.buffer_mut(Buffer::Lights);
-        words[16 * light] = light as u32;
+        words[RECORD as usize * light] = light as u32;
         let alias = data.buffer_mut(Buffer::LightAlias);
         alias[0] = 5;
-        alias[1 + 3 * light + 1] = (light as u32 + 2) % 5;
+        alias[ALIAS_HEADER as usize + ALIAS_ENTRY as usize * light + 1] = (light as u32 + 2) % 5;
     }
     // Kind 0 is an emitting triangle, seen from both sides.
     data.buffer_mut(Buffer::Lights)[1..3].copy_from_slice(&[1, 1]);
@@ -101,7 +103,7 @@ pub(crate) fn scene() -> SceneData {
     environment[3..6].copy_from_slice(&[1.5_f32, 0.6, 0.8].map(f32::to_bits));
     environment[6] = 4;
     for texel in 0..12 {
-        environment[8 + 3 * texel + 1] = (texel as u32 + 5) % 12;
+        environment[HEADER as usize + ALIAS_ENTRY as usize * texel + 1] = (texel as u32 + 5) % 12;
     }
     data
 }

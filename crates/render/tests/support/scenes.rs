@@ -1,7 +1,7 @@
 //! Scene data made by hand, after the layouts that `domain::Buffer`, `light` and `light::environment` document.
 
 use residual_render::domain::{Buffer, Domain};
-use residual_render::light::{ALIAS_ENTRY, NO_LIGHT, RECORD, environment};
+use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD, environment};
 use residual_render::math::vec3::vec3;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, Hit, Surface};
@@ -22,14 +22,22 @@ fn reals<'a>(values: impl IntoIterator<Item = &'a f32>) -> Vec<u32> {
 /// Triangles with programs and parameters 0, and the tables.
 pub(crate) fn scene(triangles: &[Triangle]) -> SceneData {
     let mut data = SceneData::default();
-    let corners = triangles.iter().flatten().flatten();
-    *data.buffer_mut(Buffer::Positions) = reals(corners);
-    *data.buffer_mut(Buffer::Triangles) = (0..3 * triangles.len() as u32).collect();
-    *data.buffer_mut(Buffer::TrianglePrograms) = vec![0; triangles.len()];
-    *data.buffer_mut(Buffer::TriangleParams) = vec![0; triangles.len()];
-    *data.buffer_mut(Buffer::TriangleLights) = vec![NO_LIGHT; triangles.len()];
+    for &triangle in triangles {
+        data.push_triangle(triangle, 0, 0);
+    }
     *data.buffer_mut(Buffer::Tables) = reals(&srgb_table());
     data
+}
+
+/// Rows of an alias table with the densities of slots and aliases.
+fn alias_rows(weights: &[f64], density: impl Fn(f64) -> f64) -> Vec<u32> {
+    let density = |k: usize| (density(weights[k]) as f32).to_bits();
+    let row = |(k, (threshold, other)): (usize, (f32, u32))| {
+        let [of_slot, of_alias] = [density(k), density(other as usize)];
+        [threshold.to_bits(), other, of_slot, of_alias]
+    };
+    let table = alias_table(weights).into_iter().enumerate();
+    table.flat_map(row).collect()
 }
 
 /// Lights: their records without padding, with the weights by which they are picked.
@@ -43,15 +51,13 @@ pub(crate) fn set_lights(data: &mut SceneData, records: &[Vec<u32>], weights: &[
     }
     let total: f64 = weights.iter().sum();
     let alias = data.buffer_mut(Buffer::LightAlias);
-    *alias = vec![records.len() as u32];
-    for ((threshold, other), weight) in alias_table(weights).into_iter().zip(weights) {
-        alias.extend([
-            threshold.to_bits(),
-            other,
-            ((weight / total) as f32).to_bits(),
-        ]);
-    }
-    assert_eq!(alias.len(), 1 + records.len() * ALIAS_ENTRY as usize);
+    *alias = vec![records.len() as u32, 0, 0, 0];
+    assert_eq!(alias.len(), ALIAS_HEADER as usize);
+    alias.extend(alias_rows(weights, |weight| weight / total));
+    assert_eq!(
+        alias.len(),
+        ALIAS_HEADER as usize + records.len() * ALIAS_ENTRY as usize
+    );
 }
 
 /// An environment image of `width` columns, rotated about +Y, as light number 0 among the texels from word 0.
@@ -89,10 +95,9 @@ pub(crate) fn set_environment(
     words.extend(reals(&[rotation.cos() as f32, rotation.sin() as f32]));
     words.extend([0, 0]);
     assert_eq!(words.len(), environment::HEADER as usize);
-    for ((threshold, other), weight) in alias_table(&weights).into_iter().zip(&weights) {
-        let density = (weight / total * weights.len() as f64) as f32;
-        words.extend([threshold.to_bits(), other, density.to_bits()]);
-    }
+    words.extend(alias_rows(&weights, |weight| {
+        weight / total * weights.len() as f64
+    }));
     *data.buffer_mut(Buffer::Environment) = words;
     set_lights(data, &[vec![0]], &[1.0]);
 }

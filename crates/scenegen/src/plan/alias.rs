@@ -2,13 +2,13 @@
 
 /// One slot: its threshold, and the outcome on the other side of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Slot {
-    pub(super) threshold: f32,
-    pub(super) alias: u32,
+struct Slot {
+    threshold: f32,
+    alias: u32,
 }
 
 /// A table over `weights`, which are finite, not negative, and not all zero.
-pub(super) fn table(weights: &[f64]) -> Vec<Slot> {
+fn table(weights: &[f64]) -> Vec<Slot> {
     let sum: f64 = weights.iter().sum();
     let scale = weights.len() as f64 / sum;
     let mut left: Vec<f64> = weights.iter().map(|w| w * scale).collect();
@@ -42,6 +42,22 @@ pub(super) fn table(weights: &[f64]) -> Vec<Slot> {
         }
     }
     slots
+}
+
+/// The rows that a renderer reads: threshold, alias, and the densities of slot and alias: their weights in
+/// terms of `unit`.
+pub(super) fn rows(weights: &[f64], unit: f64) -> impl Iterator<Item = [u32; 4]> {
+    let density = move |k: usize| ((weights[k] / unit) as f32).to_bits();
+    let row = move |(k, slot): (usize, Slot)| {
+        let alias = slot.alias as usize;
+        [
+            slot.threshold.to_bits(),
+            slot.alias,
+            density(k),
+            density(alias),
+        ]
+    };
+    table(weights).into_iter().enumerate().map(row)
 }
 
 #[cfg(test)]

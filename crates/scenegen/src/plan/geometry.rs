@@ -2,10 +2,9 @@
 
 use glam::{Mat3, Vec3, Vec4};
 use residual_render::domain::Buffer;
-use residual_render::light::NO_LIGHT;
 use residual_render::program::Culling;
 use residual_render::scene_data::SceneData;
-use residual_render::surface::Attributes;
+use residual_render::surface::{Attributes, TRIANGLE_WORDS};
 
 use super::camera::Bounds;
 use super::{Materials, PlanError, PlannedMaterial, culling};
@@ -59,17 +58,26 @@ pub(super) fn pack(
         if (vertices + mesh.positions.len() as u64) * 4 > u64::from(u32::MAX) {
             return Err(PlanError::TooLarge { what: "vertices" });
         }
-        if triangles + mesh.triangles.len() as u64 >= 1 << 31 {
+        let words = u64::from(TRIANGLE_WORDS);
+        if (triangles + mesh.triangles.len() as u64) * words > u64::from(u32::MAX) {
             return Err(PlanError::TooLarge { what: "triangles" });
         }
-        pack_vertices(mesh, instance, wanted, data, &mut bounds);
+        let positions = mesh.positions.iter();
+        let positions: Vec<Vec3> = positions
+            .map(|&p| instance.transform.transform_point3(p))
+            .collect();
+        positions.iter().for_each(|&p| bounds.add(p));
         pack_triangles(
             mesh,
             instance,
-            vertices as u32,
+            &positions,
             materials.of(mesh.material),
             data,
         );
+        if wanted != Attributes::NONE {
+            pack_indices(mesh, instance, vertices as u32, data);
+            pack_attributes(mesh, instance, wanted, data);
+        }
         let start = triangles as u32;
         vertices += mesh.positions.len() as u64;
         triangles += mesh.triangles.len() as u64;
@@ -89,15 +97,13 @@ fn extend(data: &mut SceneData, buffer: Buffer, values: impl IntoIterator<Item =
         .extend(values.into_iter().map(f32::to_bits));
 }
 
-fn pack_vertices(
+fn pack_attributes(
     mesh: &MeshDesc,
     instance: &InstanceDesc,
     wanted: Attributes,
     data: &mut SceneData,
-    bounds: &mut Bounds,
 ) {
-    let transform = instance.transform;
-    let linear = Mat3::from(transform.matrix3);
+    let linear = Mat3::from(instance.transform.matrix3);
     // Normals go by the cofactor matrix, which exists for singular transforms too; its sign mirrors with them.
     let cofactors = Mat3::from_cols(
         linear.y_axis.cross(linear.z_axis),
@@ -110,15 +116,10 @@ fn pack_vertices(
         1.0
     };
     let count = mesh.positions.len();
-    for &p in &mesh.positions {
-        let p = transform.transform_point3(p);
-        bounds.add(p);
-        extend(data, Buffer::Positions, p.to_array());
-    }
     if wanted.normals {
         for &n in &mesh.normals {
             let n = (cofactors * n * side).normalize_or(n);
-            extend(data, Buffer::Normals, n.to_array());
+            extend(data, Buffer::Normals, n.extend(0.0).to_array());
         }
     }
     if wanted.tangents {
@@ -129,13 +130,13 @@ fn pack_vertices(
             extend(data, Buffer::Tangents, turned.extend(t.w * side).to_array());
         }
     }
-    for (set, buffer, wanted) in [(0, Buffer::Uv0, wanted.uv0), (1, Buffer::Uv1, wanted.uv1)] {
-        if wanted {
-            match &mesh.uvs[set] {
-                Some(uvs) => extend(data, buffer, uvs.iter().flat_map(|uv| uv.to_array())),
-                None => extend(data, buffer, vec![0.0; count * 2]),
-            }
-        }
+    if wanted.uv0 || wanted.uv1 {
+        let uv = |set: usize, vertex: usize| match &mesh.uvs[set] {
+            Some(uvs) => uvs[vertex].to_array(),
+            None => [0.0; 2],
+        };
+        let row = |vertex| uv(0, vertex).into_iter().chain(uv(1, vertex));
+        extend(data, Buffer::Uvs, (0..count).flat_map(row));
     }
     if wanted.colors {
         match &mesh.colors {
@@ -151,29 +152,34 @@ fn pack_vertices(
     }
 }
 
+/// The triangles of a mesh, counter-clockwise seen from the front of the instance.
+fn turned(mesh: &MeshDesc, instance: &InstanceDesc) -> impl Iterator<Item = [u32; 3]> {
+    let mirrored = Mat3::from(instance.transform.matrix3).determinant() < 0.0;
+    let turn = move |&[a, b, c]: &[u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+    mesh.triangles.iter().map(turn)
+}
+
 fn pack_triangles(
     mesh: &MeshDesc,
     instance: &InstanceDesc,
-    first_vertex: u32,
+    positions: &[Vec3],
     planned: &PlannedMaterial,
     data: &mut SceneData,
 ) {
-    let mirrored = Mat3::from(instance.transform.matrix3).determinant() < 0.0;
-    for &[a, b, c] in &mesh.triangles {
-        let corners = if mirrored { [a, c, b] } else { [a, b, c] };
-        data.buffer_mut(Buffer::Triangles)
-            .extend(corners.map(|corner| first_vertex + corner));
+    for triangle in turned(mesh, instance) {
+        let corners = triangle.map(|corner| positions[corner as usize].to_array());
+        data.push_triangle(corners, planned.program, planned.params);
     }
-    let count = mesh.triangles.len();
-    let push = |data: &mut SceneData, buffer: Buffer, value: u32| {
-        let words = data.buffer_mut(buffer);
-        words.resize(words.len() + count, value);
-    };
-    push(data, Buffer::TrianglePrograms, planned.program);
-    push(data, Buffer::TriangleParams, planned.params);
-    push(data, Buffer::TriangleLights, NO_LIGHT);
     data.single_sided
-        .resize(data.single_sided.len() + count, planned.culled);
+        .resize(data.triangle_count(), planned.culled);
+}
+
+fn pack_indices(mesh: &MeshDesc, instance: &InstanceDesc, first_vertex: u32, data: &mut SceneData) {
+    let indices = data.buffer_mut(Buffer::Indices);
+    for triangle in turned(mesh, instance) {
+        let [a, b, c] = triangle.map(|corner| first_vertex + corner);
+        indices.extend([a, b, c, 0]);
+    }
 }
 
 /// Whether a mesh's normals say more than its triangles do.

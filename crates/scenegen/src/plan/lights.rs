@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use residual_render::domain::Buffer;
 use residual_render::light::environment::HEADER;
-use residual_render::light::{ALIAS_ENTRY, RECORD};
+use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD};
 use residual_render::program::{ColorNode, LightNode, SourceNode};
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
@@ -109,7 +109,7 @@ impl PlannedLights {
         geometry: &Geometry,
         data: &mut SceneData,
     ) {
-        let (positions, triangles) = (data.positions(), data.triangles());
+        let positions = data.positions();
         for (range, material) in &geometry.ranges {
             let planned = materials.of(*material);
             let program = &materials.programs[planned.program as usize];
@@ -127,8 +127,8 @@ impl PlannedLights {
             let sides = if emission.double_sided { 2.0 } else { 1.0 };
             let kind = self.kind(node);
             for prim in range.clone() {
-                let corners = triangles[prim as usize].map(|corner| {
-                    glam::DVec3::from_array(positions[corner as usize].map(f64::from))
+                let corners = [0, 1, 2].map(|corner| {
+                    glam::DVec3::from_array(positions[3 * prim as usize + corner].map(f64::from))
                 });
                 let area = (corners[1] - corners[0])
                     .cross(corners[2] - corners[0])
@@ -137,7 +137,7 @@ impl PlannedLights {
                 let power = std::f64::consts::PI * sides * area * radiance;
                 if power > 0.0 && power.is_finite() {
                     let number = self.records.len() as u32;
-                    data.buffer_mut(Buffer::TriangleLights)[prim as usize] = number;
+                    data.set_light(prim as usize, number);
                     self.push(kind, power, &[prim, u32::from(emission.double_sided)]);
                 }
             }
@@ -171,9 +171,10 @@ impl PlannedLights {
                 let kind = self.kind(LightNode::Spot);
                 // KHR_lights_punctual: scale = 1/(cos inner − cos outer), offset = −cos outer·scale.
                 let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
-                let mut record =
-                    words(&[position.to_array(), light.intensity, direction.to_array()]);
-                record.extend([scale, -outer.cos() * scale].map(f32::to_bits));
+                let mut record = words(&[position.to_array(), light.intensity]);
+                record.push(scale.to_bits());
+                record.extend(words(&[direction.to_array()]));
+                record.push((-outer.cos() * scale).to_bits());
                 let cone = 0.5 * sphere * (1.0 - f64::from(outer.cos()));
                 self.push(kind, cone * strength, &record);
             }
@@ -229,10 +230,7 @@ impl PlannedLights {
         let buffer = data.buffer_mut(Buffer::Environment);
         buffer.reserve_exact(header.len() + weights.len() * ALIAS_ENTRY as usize);
         buffer.extend(header);
-        for (slot, weight) in alias::table(&weights).iter().zip(&weights) {
-            let density = (weight / mean) as f32;
-            buffer.extend([slot.threshold.to_bits(), slot.alias, density.to_bits()]);
-        }
+        buffer.extend(alias::rows(&weights, mean).flatten());
     }
 
     /// Half of the picks go by power, half evenly to emitting triangles, points, spots, … as far as there are any, so
@@ -255,11 +253,10 @@ impl PlannedLights {
         };
         let probabilities: Vec<f64> = self.powers.iter().map(probability).collect();
         let alias = data.buffer_mut(Buffer::LightAlias);
-        alias.push(probabilities.len() as u32);
+        alias.extend([probabilities.len() as u32, 0, 0, 0]);
+        debug_assert_eq!(alias.len(), ALIAS_HEADER as usize);
         if !probabilities.is_empty() {
-            for (slot, p) in alias::table(&probabilities).iter().zip(&probabilities) {
-                alias.extend([slot.threshold.to_bits(), slot.alias, (*p as f32).to_bits()]);
-            }
+            alias.extend(alias::rows(&probabilities, 1.0).flatten());
         }
         *data.buffer_mut(Buffer::Lights) = self.records.concat();
     }

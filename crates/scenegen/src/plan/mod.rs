@@ -101,7 +101,7 @@ pub enum PlanError {
         /// What there is.
         available: String,
     },
-    /// The scene needs more than 2³² words of something, or more than 2³¹ triangles.
+    /// The scene needs more than 2³² words of something.
     #[error(
         "the scene is too large: its {what} do not fit 32-bit indices; split it or simplify it"
     )]

@@ -51,6 +51,11 @@ impl<'a> Sources<'a> {
         offset
     }
 
+    /// A parameter that is read as a row.
+    fn param_row(&mut self, [x, y, z]: [u32; 3]) -> u32 {
+        self.param([x, y, z, 0])
+    }
+
     /// A number: 0 and 1 are always constants, since they remove code.
     pub(super) fn number(&mut self, value: f32) -> ScalarNode {
         if value == 0.0 || value == 1.0 || self.binding == Binding::Constants {
@@ -65,7 +70,7 @@ impl<'a> Sources<'a> {
         if value == [0.0; 3] || value == [1.0; 3] || self.binding == Binding::Constants {
             ColorNode::Const(value)
         } else {
-            ColorNode::Param(self.param(value.map(f32::to_bits)))
+            ColorNode::Param(self.param_row(value.map(f32::to_bits)))
         }
     }
 
@@ -192,10 +197,11 @@ impl<'a> Sources<'a> {
             _ => self.read.uv1 |= self.available.uv1,
         }
         let place = self.images.place(self.scene, desc.image);
-        let slot = self.param(place);
-        let transform = texture
-            .transform
-            .map(|matrix| self.param(matrix.into_iter().flatten().map(f32::to_bits)));
+        let slot = self.param_row(place);
+        let transform = texture.transform.map(|matrix| {
+            let [first, _] = matrix.map(|row| self.param_row(row.map(f32::to_bits)));
+            first
+        });
         let uv = UvMap {
             set: texture.uv_set,
             transform,

@@ -34,6 +34,7 @@ pub(super) fn apply(op: Op, operands: [u32; 3]) -> u32 {
         Op::XorU => (i ^ j).0,
         Op::ShlU(by) => (i << by).0,
         Op::ShrU(by) => (i >> by).0,
+        Op::ReverseBits => d.reverse_bits(i).0,
         Op::EqU => u32::from(d.eq_u(i, j)),
         Op::LtU => u32::from(d.lt_u(i, j)),
         Op::ToUint => d.to_uint(a).0,

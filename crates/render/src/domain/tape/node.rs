@@ -99,6 +99,7 @@ pub enum Op {
     XorU,
     ShlU(u32),
     ShrU(u32),
+    ReverseBits,
     EqU,
     LtU,
     ToUint,
@@ -122,6 +123,7 @@ impl Op {
             | Self::Floor
             | Self::ShlU(_)
             | Self::ShrU(_)
+            | Self::ReverseBits
             | Self::ToUint
             | Self::ToReal
             | Self::ToBits
@@ -176,6 +178,7 @@ impl Op {
             | Self::XorU
             | Self::ShlU(_)
             | Self::ShrU(_)
+            | Self::ReverseBits
             | Self::ToUint
             | Self::ToBits => Some(Kind::Word),
             Self::Lt

@@ -205,6 +205,9 @@ impl<'t> Domain for Record<'t> {
     fn from_bits(self, a: Self::U) -> Self::F {
         a.unary(Op::FromBits)
     }
+    fn reverse_bits(self, a: Self::U) -> Self::U {
+        a.unary(Op::ReverseBits)
+    }
     fn load(self, buffer: Buffer, index: Self::U) -> Self::U {
         let node = Node::Load {
             buffer,

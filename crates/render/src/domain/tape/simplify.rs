@@ -100,6 +100,7 @@ impl Recorded {
             | Op::ShlU(_)
             | Op::ShrU(_) => self.word_identity(op, operands),
             Op::And | Op::Or | Op::Not | Op::Select => self.truth_identity(op, operands),
+            Op::ReverseBits => self.operand_of(operands[0], Op::ReverseBits),
             Op::ToBits => self.operand_of(operands[0], Op::FromBits),
             Op::FromBits => self.operand_of(operands[0], Op::ToBits),
             // −0 = 0, −0 < 0 is false, and so on: comparisons do not see the sign of zero.

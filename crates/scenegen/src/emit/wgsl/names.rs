@@ -3,7 +3,7 @@
 use residual_render::domain::Buffer;
 use residual_render::domain::tape::{Kind, ParameterKind};
 
-/// The name of a buffer: `TriangleParams` is `triangle_params`.
+/// The name of a buffer: `TrianglePrograms` is `triangle_programs`.
 pub(super) fn buffer_name(buffer: Buffer) -> String {
     let mut name = String::new();
     for letter in format!("{buffer:?}").chars() {

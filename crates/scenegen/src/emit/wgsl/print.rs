@@ -345,6 +345,7 @@ impl Printer<'_> {
             Op::XorU => infix("^"),
             Op::ShlU(by) => shift("<<", by),
             Op::ShrU(by) => shift(">>", by),
+            Op::ReverseBits => call("reverseBits"),
             Op::ToUint => call("u32"),
             Op::ToReal => call("f32"),
             Op::ToBits => call("bitcast<u32>"),

@@ -6,13 +6,13 @@ use residual_render::domain::tape::{Function, Outputs, Real, Record, Tape};
 use residual_render::domain::{Buffers, Domain};
 use residual_render::light::{self, LightSample};
 use residual_render::material::Material;
-use residual_render::math::{Frame, Vec3};
+use residual_render::math::Vec3;
 use residual_render::program::{
     AlphaNode, BoxedAlpha, BoxedMaterial, Interpreted, Program, Structure,
 };
 use residual_render::sampler::{SampleKey, Sampler};
 use residual_render::scene::Scene;
-use residual_render::surface::{Hit, MAX_INPUTS, Surface};
+use residual_render::surface::{Hit, Surface};
 
 /// A recorded function with what is printed around it.
 pub(super) struct Recorded {
@@ -149,37 +149,13 @@ pub(super) fn program(number: usize, program: &Program) -> Vec<Recorded> {
         .collect()
 }
 
-/// A surface of which nothing is known but the place: all that lights ask for.
-fn only_point<'t>(d: Record<'t>, point: Vec3<Real<'t>>) -> Surface<Record<'t>> {
-    let zero = d.lit(0.0);
-    let nowhere = Vec3::splat(zero);
-    Surface {
-        point,
-        error: nowhere,
-        area: zero,
-        geometric_normal: nowhere,
-        frame: Frame {
-            tangent: nowhere,
-            bitangent: nowhere,
-            normal: nowhere,
-        },
-        front: d.truth(true),
-        cos_geometric: zero,
-        uv: [[zero; 2]; 2],
-        color: nowhere,
-        alpha: zero,
-        params: d.uint(0),
-        inputs: [nowhere; MAX_INPUTS],
-    }
-}
-
 /// The functions of one kind of light.
 pub(super) fn light(number: usize, structure: &Structure) -> Vec<Recorded> {
     let empty = Buffers::EMPTY;
     let tape = Tape::new();
     let d = Record::new(&tape);
     let record = tape.word("record");
-    let from = only_point(d, tape.vector("point"));
+    let from = tape.vector("point");
     let random = components(tape.vector("random"));
     let scene = Interpreted::<Record<'_>>::new(structure, &empty);
     let LightSample {
@@ -189,7 +165,7 @@ pub(super) fn light(number: usize, structure: &Structure) -> Vec<Recorded> {
         radiance,
         pdf,
         delta,
-    } = scene.lights()[number].sample(d, record, &from, random);
+    } = scene.lights()[number].sample(d, record, from, random);
     let outputs = Outputs::new()
         .vector("wi", wi)
         .vector("position", position)
