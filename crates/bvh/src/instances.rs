@@ -244,6 +244,12 @@ where
     S: Lanes<N> + Lanes<P>,
 {
     const ANY: bool = ANY;
+    type Item = Placed;
+
+    #[inline(always)]
+    fn items(&self) -> &[Placed] {
+        &self.bvh.placed
+    }
 
     #[inline(always)]
     fn tmax(&self) -> f32 {

@@ -172,6 +172,7 @@ mod partition;
 mod placed;
 mod ploc;
 mod precision;
+mod prefetch;
 mod presplit;
 mod quantized;
 mod ray;

@@ -11,6 +11,7 @@ use std::mem::MaybeUninit;
 use crate::bvh::{Child, MAX_DEPTH, SINGLE_SIDED};
 use crate::columns::{Columns, greatest};
 use crate::filter::improve;
+use crate::prefetch::prefetch_child;
 use crate::single::{query, search};
 use crate::slab::Slab;
 use crate::stream::Class;
@@ -115,9 +116,11 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
                     if touching == 0 {
                         continue;
                     }
+                    let child = Child(node.children()[slot]);
+                    prefetch_child(self.bvh.nodes(), self.bvh.packets(), child);
                     let entry = Entry {
                         distance: distances[slot],
-                        child: Child(node.children()[slot]),
+                        child,
                         rays: touching,
                     };
                     // Insertion, nearest on top; where any hit will do, the order is the builder's.

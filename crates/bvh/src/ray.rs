@@ -26,12 +26,15 @@ impl Ray {
     /// finite, and an interval that is not empty.
     #[inline(always)]
     pub fn is_valid(&self) -> bool {
-        // Zero times a finite number is zero, and NaN otherwise.
-        let [x, y, z] = self.org.map(|x| x * 0.0);
-        let [u, v, w] = self.dir.map(|x| x * 0.0);
-        let finite = (x + y + z) + (u + v + w) == 0.0;
+        // Without their signs the bits of numbers sort like the numbers, then infinity, then NaN.
+        let greatest = |vector: [f32; 3]| {
+            let [x, y, z] = vector.map(|x| x.abs().to_bits());
+            x.max(y).max(z)
+        };
+        let (org, dir) = (greatest(self.org), greatest(self.dir));
+        let finite = org.max(dir) <= f32::MAX.to_bits();
         // Below the smallest normal number 1/dir overflows: such a direction is as good as zero.
-        finite & (self.longest() >= f32::MIN_POSITIVE) & (self.tmin <= self.tmax)
+        finite & (dir >= f32::MIN_POSITIVE.to_bits()) & (self.tmin <= self.tmax)
     }
 
     /// The greatest component of the direction.

@@ -164,6 +164,12 @@ impl<S: Lanes<1>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> 
     for Search<'_, S, P, Pr, F, ANY>
 {
     const ANY: bool = ANY;
+    type Item = TrianglePacket<P>;
+
+    #[inline(always)]
+    fn items(&self) -> &[TrianglePacket<P>] {
+        self.packets
+    }
 
     #[inline(always)]
     fn tmax(&self) -> f32 {

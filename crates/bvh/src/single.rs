@@ -136,6 +136,12 @@ impl<S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> 
     for Search<'_, S, P, Pr, F, ANY>
 {
     const ANY: bool = ANY;
+    type Item = TrianglePacket<P>;
+
+    #[inline(always)]
+    fn items(&self) -> &[TrianglePacket<P>] {
+        self.packets
+    }
 
     #[inline(always)]
     fn tmax(&self) -> f32 {

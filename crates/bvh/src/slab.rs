@@ -78,7 +78,7 @@ fn shift<S: Lanes<W>, const W: usize>(
     reach: f32,
 ) -> S::Float {
     let shift = simd.mul(org, scale);
-    simd.sub(simd.mul(simd.abs(shift), simd.splat(reach)), shift)
+    simd.mul_sub(simd.abs(shift), simd.splat(reach), shift)
 }
 
 /// The inverse of components of directions, of which `longest` are the greatest, from their signs
@@ -97,12 +97,13 @@ pub(crate) fn inverse<S: Lanes<W>, const W: usize>(
 /// One ray's constants, and its octant.
 #[inline(always)]
 fn constants_of_ray<S: Lanes<4>>(simd: S, ray: &Ray) -> (Constants, Octant) {
-    let padded = |[x, y, z]: [f32; 3]| [x, y, z, z];
-    let dir = simd.load(&padded(ray.dir));
+    // As they lie in memory; what comes last is of no use.
+    let lanes = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last];
+    let dir = simd.load(&lanes(ray.dir, ray.tmax));
     let negative = simd.bits(simd.lt(dir, simd.splat(0.0)));
     let sign = simd.select(negative, simd.splat(-1.0), simd.splat(1.0));
     let inv = inverse(simd, sign, simd.abs(dir), simd.splat(ray.longest()));
-    let org = padded(ray.org);
+    let org = lanes(ray.org, ray.tmin);
     let octant = [0, 1, 2].map(|axis| negative >> axis & 1 == 1);
     (Constants::new(simd, org, inv, org, inv), octant)
 }

@@ -6,14 +6,24 @@
 use std::ops::ControlFlow;
 
 use crate::bvh::Child;
+use crate::prefetch::prefetch_child;
 use crate::slab::Slab;
 use crate::stack::Stack;
 use crate::{Boxes, Lanes};
+
+/// So many of a node's touched children are prefetched. More would be too many: those behind a hit
+/// are never visited.
+const PREFETCHED: usize = 2;
 
 /// What happens at leaves.
 pub(crate) trait Visitor {
     /// Whether any hit will do: then the order of visits does not matter.
     const ANY: bool;
+    /// What leaves hold.
+    type Item;
+
+    /// All of it.
+    fn items(&self) -> &[Self::Item];
     /// The farthest distance of interest, which may shrink.
     fn tmax(&self) -> f32;
     /// Breaks if nothing else needs to be visited.
@@ -40,9 +50,9 @@ impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for Slab<S, N> {
 /// The nodes must be sound, as [`crate::BvhView::new`] checks, and `start` one of their children
 /// or the root.
 #[inline(always)]
-pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, V: Visitor>(
+pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, B: Boxes<N>, V: Visitor>(
     simd: S,
-    nodes: &[impl Boxes<N>],
+    nodes: &[B],
     start: Child,
     test: &impl BoxTest<S, N>,
     visitor: &mut V,
@@ -54,6 +64,16 @@ pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, V: Visitor>(
             // SAFETY: children that are not leaves index the nodes, by this function's contract.
             let node = unsafe { nodes.get_unchecked(current.0 as usize) };
             let (touched, entry) = test.touched_children(simd, node, visitor.tmax());
+            let mut rest = touched;
+            for _ in 0..PREFETCHED {
+                if rest == 0 {
+                    break;
+                }
+                // The remainder keeps a slot in range for the compiler.
+                let slot = rest.trailing_zeros() as usize % N;
+                rest &= rest - 1;
+                prefetch_child(nodes, visitor.items(), Child(node.children()[slot]));
+            }
             // SAFETY: `touched` has bits in 0..N only. The stack has room for N - 1 entries for
             // each level of the tree, and each of the at most MAX_DEPTH nodes on the path to this
             // one left at most N - 1 behind, since one of its children was descended into.
