@@ -227,7 +227,7 @@ fn rows_are_four_words() {
         0 => 244,
         1 => 256,
         2 => u32::MAX - 11,
-        _ if row % 3 == 0 => 256 + rng.bits() % (u32::MAX - 268),
+        _ if row.is_multiple_of(3) => 256 + rng.bits() % (u32::MAX - 268),
         _ => rng.bits() % 245,
     };
     let columns = [(0..ROWS).map(first).collect()];

@@ -41,7 +41,7 @@ impl<D: Domain> Record<D> {
 
     /// The light of the record, shining everywhere from its position.
     #[inline(always)]
-    fn from_position(&self, d: D, to: Vec3<D::F>) -> LightSample<D> {
+    fn arriving_at(&self, d: D, to: Vec3<D::F>) -> LightSample<D> {
         let towards = self.position - to;
         // Finite even where the point lies on the light (hard case L-11).
         let distance = d.max(towards.length(d), d.lit(1e-6));
@@ -60,7 +60,7 @@ impl<D: Domain> Record<D> {
 impl<D: Domain> LightKind<D> for Point {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
-        Record::load(d, record).from_position(d, from)
+        Record::load(d, record).arriving_at(d, from)
     }
 }
 
@@ -68,7 +68,7 @@ impl<D: Domain> LightKind<D> for Spot {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
         let record = Record::load(d, record);
-        let everywhere = record.from_position(d, from);
+        let everywhere = record.arriving_at(d, from);
         let cos = -record.axis.dot(d, everywhere.wi);
         let falloff = d.fma(cos, record.scale, record.offset);
         let falloff = d.min(d.max(falloff, d.lit(0.0)), d.lit(1.0));
