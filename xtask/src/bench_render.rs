@@ -111,11 +111,8 @@ fn measure(
             })
         })
         .collect::<Result<Vec<_>>>()?;
-    let bvh = AnyBvh::build(
-        &plan.data,
-        LaneCount::native(),
-        quality(plan.data.triangle_count()),
-    );
+    let triangles = plan.data.triangle_count();
+    let bvh = AnyBvh::build(&plan.data, LaneCount::native(), quality(triangles));
     let (single, packets) = (
         embree.map(EmbreeTraversal::single),
         embree.map(EmbreeTraversal::packets),

@@ -54,7 +54,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             scope.spawn(|| compiled.get_or_init(|| Compilation::run(&compiler, &plan, lanes)))
         });
         let bvh_start = Instant::now();
-        let bvh = AnyBvh::build(&plan.data, lanes, quality(plan.data.triangle_count()));
+        let triangles = plan.data.triangle_count();
+        let bvh = AnyBvh::build(&plan.data, LaneCount::native(), quality(triangles));
         bvh_time = bvh_start.elapsed();
         if args.tier == TierArg::Specialized
             && let Some(compilation) = compilation

@@ -8,6 +8,7 @@ use crate::{Lanes, Ray};
 
 /// `R` rays.
 #[derive(Clone, Copy)]
+#[repr(align(64))]
 pub(crate) struct Columns<const R: usize> {
     /// `[axis][ray]`
     pub(crate) org: [[f32; R]; 3],

@@ -12,6 +12,7 @@ use crate::bvh::{Child, MAX_DEPTH, SINGLE_SIDED};
 use crate::columns::{Columns, greatest};
 use crate::filter::improve;
 use crate::prefetch::prefetch_child;
+use crate::simd::Stored;
 use crate::single::{query, search};
 use crate::slab::Slab;
 use crate::stream::Class;
@@ -105,8 +106,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
                 // SAFETY: children that are not leaves index the nodes of a sound hierarchy.
                 let node = unsafe { self.bvh.nodes().get_unchecked(child.0 as usize) };
                 let (mut touched, entry) = envelope.touched_children(simd, node, farthest);
-                let mut distances = [0.0f32; N];
-                simd.store(entry, &mut distances);
+                let Stored(distances) = Stored::<N>::of(simd, entry);
                 let base = len;
                 while touched != 0 {
                     // The last first: pushed in reverse, children come in their order.
@@ -204,7 +204,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
                 if test.lanes == 0 {
                     continue;
                 }
-                let (t, u, v) = test.store(simd);
+                let [Stored(t), Stored(u), Stored(v)] = test.store(simd);
                 for lane in lanes(test.lanes) {
                     let hit = Hit {
                         t: t[lane],
@@ -226,6 +226,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
 }
 
 /// The rays' hits so far.
+#[repr(align(64))]
 struct Best<const R: usize> {
     /// Where the interval ends: at the hit, or where any will do, before it begins. So it does in
     /// lanes left over.

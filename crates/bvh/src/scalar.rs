@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use crate::boxes::sealed::Sealed;
 use crate::bvh::{Child, TrianglePacket};
 use crate::filter::improve;
+use crate::simd::Stored;
 use crate::slab::Slab;
 use crate::traverse::{BoxTest, Visitor, traverse};
 use crate::triangle::{OneTriangle, Shear};
@@ -190,7 +191,7 @@ impl<S: Lanes<1>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> 
                     .precision
                     .test(self.simd, &self.shear, triangle, tmax, F::CULLING);
                 let Some(test) = test else { continue };
-                let ([t], [u], [v]) = test.store(self.simd);
+                let [Stored([t]), Stored([u]), Stored([v])] = test.store(self.simd);
                 let hit = Hit { t, u, v, prim };
                 if improve(&mut self.best, hit, test.back != 0, self.ray, self.filter) && ANY {
                     return ControlFlow::Break(());

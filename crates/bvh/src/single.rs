@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::bvh::{Child, TrianglePacket};
 use crate::filter::improve;
+use crate::simd::Stored;
 use crate::slab::Slab;
 use crate::traverse::{Visitor, traverse};
 use crate::triangle::Shear;
@@ -172,7 +173,7 @@ impl<S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>
         let Some(hits) = hits else {
             return ControlFlow::Continue(());
         };
-        let (t, u, v) = hits.store(self.simd);
+        let [Stored(t), Stored(u), Stored(v)] = hits.store(self.simd);
         let mut lanes = hits.lanes;
         while lanes != 0 {
             // The remainder keeps a lane in range for the compiler; hits have bits in 0..P only.

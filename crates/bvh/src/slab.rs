@@ -102,7 +102,10 @@ fn constants_of_ray<S: Lanes<4>>(simd: S, ray: &Ray) -> (Constants, Octant) {
     let dir = simd.load(&lanes(ray.dir, ray.tmax));
     let negative = simd.bits(simd.lt(dir, simd.splat(0.0)));
     let sign = simd.select(negative, simd.splat(-1.0), simd.splat(1.0));
-    let inv = inverse(simd, sign, simd.abs(dir), simd.splat(ray.longest()));
+    // Not the inverse of `tmax`: of `f32::MAX` it is denormal, which costs as much as a node.
+    let longest = simd.splat(ray.longest());
+    let size = simd.select(0b111, simd.abs(dir), longest);
+    let inv = inverse(simd, sign, size, longest);
     let org = lanes(ray.org, ray.tmin);
     let octant = [0, 1, 2].map(|axis| negative >> axis & 1 == 1);
     (Constants::new(simd, org, inv, org, inv), octant)

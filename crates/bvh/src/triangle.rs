@@ -5,6 +5,7 @@
 
 use crate::bvh::TrianglePacket;
 use crate::columns::Columns;
+use crate::simd::Stored;
 use crate::{Lanes, Ray};
 
 /// A triangle a lane.
@@ -218,20 +219,20 @@ impl<S: Lanes<W>, const W: usize> LaneHits<S, W> {
     /// Replaces `[t, u, v]` in some lanes.
     #[inline(always)]
     pub(crate) fn mend(&mut self, simd: S, lanes: u32, hit: impl Fn(usize) -> [f32; 3]) {
-        let (mut t, mut u, mut v) = self.store(simd);
+        let [Stored(mut t), Stored(mut u), Stored(mut v)] = self.store(simd);
         for lane in (0..W).filter(|lane| lanes >> lane & 1 == 1) {
             [t[lane], u[lane], v[lane]] = hit(lane);
         }
         (self.t, self.u, self.v) = (simd.load(&t), simd.load(&u), simd.load(&v));
     }
 
-    /// `(t, u, v)` of every lane; meaningful for the lanes that hit.
+    /// t, u and v of every lane; meaningful for the lanes that hit.
     #[inline(always)]
-    pub(crate) fn store(&self, simd: S) -> ([f32; W], [f32; W], [f32; W]) {
-        let (mut t, mut u, mut v) = ([0.0; W], [0.0; W], [0.0; W]);
-        simd.store(self.t, &mut t);
-        simd.store(self.u, &mut u);
-        simd.store(self.v, &mut v);
-        (t, u, v)
+    pub(crate) fn store(&self, simd: S) -> [Stored<W>; 3] {
+        [
+            Stored::of(simd, self.t),
+            Stored::of(simd, self.u),
+            Stored::of(simd, self.v),
+        ]
     }
 }

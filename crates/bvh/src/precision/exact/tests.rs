@@ -112,7 +112,7 @@ fn hits<P: Test>(
         let Some(hits) = precision.test(simd, &shear, packet, tmax, Culling::None) else {
             return ([[0.0; 3]; 16], 0, 0);
         };
-        let (t, u, v) = hits.store(simd);
+        let [t, u, v] = hits.store(simd).map(|stored| stored.0);
         let hit = std::array::from_fn(|lane| [t[lane], u[lane], v[lane]]);
         (hit, hits.lanes, hits.back)
     }
