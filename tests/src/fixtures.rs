@@ -352,8 +352,8 @@ pub fn room() -> SceneDesc {
     b.finish()
 }
 
-/// Sheets with every wrap, filter and texel format, transforms and a second set of coordinates, masks and blending,
-/// under an environment, seen by an orthographic camera.
+/// Sheets with every wrap, filter and texel format, transforms and a second set of coordinates, masks and blending, each
+/// single-sided or double-sided, under an environment, seen by an orthographic camera.
 pub fn textures() -> SceneDesc {
     let mut b = Builder::new("textures");
     let (bytes, floats) = (b.bytes(7, 5), b.floats(6, 4));
@@ -399,6 +399,7 @@ pub fn textures() -> SceneDesc {
                     MaterialDesc {
                         alpha_mode,
                         alpha,
+                        double_sided: number % 3 != 1,
                         ..material(&name, surface)
                     },
                     [mesh],

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{
-    AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer,
+    AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer, Traversal,
 };
 use residual_render::film::Film;
 use residual_scenegen::desc::SceneDesc;
@@ -62,15 +62,15 @@ impl Look {
     }
 }
 
-/// A plan with the hierarchy that goes with a lane count.
+/// A plan with what traces its rays, for a lane count.
 pub struct Prepared<'a> {
     plan: &'a Plan,
-    bvh: AnyBvh,
+    traversal: Box<dyn Traversal + Sync>,
     lanes: LaneCount,
 }
 
 impl<'a> Prepared<'a> {
-    /// Builds the hierarchy; a hasty one over more triangles than it pays for in a test.
+    /// Builds the hierarchy that goes with the lane count; a hasty one over more triangles than it pays for in a test.
     pub fn new(plan: &'a Plan, lanes: LaneCount) -> Self {
         const MANY: usize = 150_000;
         let many = plan.data.triangle_count() > MANY;
@@ -79,16 +79,38 @@ impl<'a> Prepared<'a> {
         } else {
             BuildQuality::Best
         };
-        let bvh = AnyBvh::build(&plan.data, lanes, quality);
-        Self { plan, bvh, lanes }
+        Self::with_traversal(plan, lanes, AnyBvh::build(&plan.data, lanes, quality))
+    }
+
+    /// With a traversal of the plan's triangles.
+    pub fn with_traversal(
+        plan: &'a Plan,
+        lanes: LaneCount,
+        traversal: impl Traversal + Sync + 'static,
+    ) -> Self {
+        Self {
+            plan,
+            traversal: Box::new(traversal),
+            lanes,
+        }
+    }
+
+    /// What a device needs of it.
+    pub fn view(&self) -> SceneView<'_> {
+        SceneView {
+            buffers: self.plan.data.buffers(),
+            traversal: &*self.traversal,
+        }
+    }
+
+    /// The plan's interpreter.
+    pub fn interpreter(&self) -> Interpreter {
+        Interpreter::new(self.plan.structure.clone(), self.lanes)
     }
 
     /// Renders by interpretation.
     pub fn interpret(&self, look: &Look) -> Film {
-        self.render(
-            &Interpreter::new(self.plan.structure.clone(), self.lanes),
-            look,
-        )
+        self.render(&self.interpreter(), look)
     }
 
     /// Renders by a renderer made for the plan and the lane count.
@@ -107,12 +129,7 @@ impl<'a> Prepared<'a> {
             max_depth: look.max_depth,
             seed: look.seed,
         };
-        let view = SceneView {
-            buffers: self.plan.data.buffers(),
-            traversal: &self.bvh,
-        };
-        device
-            .render(|| renderer, &view, &options, |_| ControlFlow::Continue(()))
-            .0
+        let go_on = |_| ControlFlow::Continue(());
+        device.render(|| renderer, &self.view(), &options, go_on).0
     }
 }

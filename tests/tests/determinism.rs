@@ -12,10 +12,14 @@ use residual_tests::{Look, Prepared, fixtures};
 const SIZE: [u32; 2] = [61, 43];
 
 fn room(sampler: AnySampler) -> Plan {
+    room_of_size(SIZE, sampler)
+}
+
+fn room_of_size(size: [u32; 2], sampler: AnySampler) -> Plan {
     plan(
         &fixtures::room(),
         &PlanOptions {
-            size: SIZE,
+            size,
             sampler,
             ..PlanOptions::default()
         },
@@ -42,6 +46,29 @@ fn tiles_and_threads_do_not_show() {
                     difference, None,
                     "{sampler:?}, tiles of {tile_size}, {threads} threads"
                 );
+            }
+        }
+    }
+}
+
+/// Smaller than a tile, than a block of camera rays, than a vector.
+#[test]
+fn tiles_and_lanes_do_not_show_in_small_images() {
+    for size in [[1, 1], [3, 5], [17, 9]] {
+        let plan = room_of_size(size, AnySampler::Sobol);
+        let look = Look::new(size, 5);
+        let expected = Prepared::new(&plan, LaneCount::One).interpret(&look);
+        for lanes in LaneCount::ALL {
+            let prepared = Prepared::new(&plan, lanes);
+            for tile_size in [1, 5, 64] {
+                let film = prepared.interpret(&Look {
+                    tile_size: Some(tile_size),
+                    ..look
+                });
+                let difference = first_difference(&expected.image(), &film.image());
+                let what = format!("{size:?}, {lanes} lanes, tiles of {tile_size}");
+                assert_eq!(difference, None, "{what}");
+                assert_eq!(expected.error(), film.error(), "{what}");
             }
         }
     }

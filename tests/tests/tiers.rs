@@ -9,7 +9,7 @@ use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 use residual_tests::pictures::{first_difference, mean};
-use residual_tests::{Look, Prepared, fixtures, read_scene, scenes};
+use residual_tests::{Look, Parts, Prepared, fixtures, read_scene, scenes};
 
 /// Neither a multiple of a tile nor of a lane count.
 const SIZE: [u32; 2] = [75, 52];
@@ -79,6 +79,21 @@ fn check(scene: &SceneDesc, samples: u32, compiled: &[LaneCount]) {
                     &prepared.render(renderer, &look),
                 );
             }
+        }
+        // Renderers know no hierarchy: whatever finds the same hits will do.
+        if let Some(renderer) = &renderer {
+            let what = format!("{}, {lanes} lanes, traced in parts", scene.name);
+            let parts = Prepared::with_traversal(&plan, lanes, Parts::new(&plan.data));
+            expect_same(
+                &format!("{what}, interpreted"),
+                &expected,
+                &parts.interpret(&two_threads),
+            );
+            expect_same(
+                &format!("{what}, specialised"),
+                &expected,
+                &parts.render(renderer, &two_threads),
+            );
         }
     }
     let constants = planned(scene, Binding::Constants);
@@ -179,6 +194,15 @@ fn texture_settings() {
         "materials/TextureSettingsTest/TextureSettingsTest.gltf",
         &[],
     );
+}
+
+/// Comparing traversals says little unless alpha and sides both matter, and each triangle is a part of its own.
+#[test]
+fn textures_have_alpha_and_single_sides() {
+    let plan = planned(&fixtures::textures(), Binding::Structure);
+    assert!(plan.structure.programs.iter().any(|p| p.alpha.is_some()));
+    assert!(plan.data.single_sided.contains(&true) && plan.data.single_sided.contains(&false));
+    assert!(plan.data.triangle_count() <= Parts::MOST);
 }
 
 /// An effect that no fixture calls for would be compiled by no test.

@@ -4,7 +4,9 @@ use fearless_simd::{Level, dispatch};
 use residual_render::bsdf::{
     Bsdf, Conductor, Dielectric, Diffuse, Glossy, Mix, Phong, Solid, Sum, Thin, fresnel,
 };
-use residual_render::domain::{Buffer, Domain, Lanes, Lanes4, Lanes8, Lanes16, One, Scalar};
+use residual_render::domain::{
+    Buffer, Domain, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, One, Scalar,
+};
 use residual_render::light::{
     self, Area, Directional, Environment, LightKind, LightSample, Point, Spot,
 };
@@ -207,6 +209,52 @@ fn operations_agree() {
     // Numbers of like size, whose results are not all infinite or 0.
     let near = reals(41, |r| [0; 5].map(|_| r.signed_power(-3.0, 30.0)));
     check("operations", &scene(&[FLOOR]), &Operations, &near);
+}
+
+/// Records of four words to lanes and back.
+fn transpose<D: Lanes>(d: D) {
+    let mut rng = Rng::new(52);
+    for _ in 0..200 {
+        let records: [[u32; 4]; MAX_LANES] = [(); MAX_LANES].map(|()| [(); 4].map(|()| rng.bits()));
+        let columns = d.columns(|lane| records[lane]);
+        for (k, column) in columns.into_iter().enumerate() {
+            let mut words = [0; MAX_LANES];
+            d.store_word(column, &mut words[..D::LANES]);
+            for (lane, record) in records[..D::LANES].iter().enumerate() {
+                assert_eq!(
+                    words[lane],
+                    record[k],
+                    "word {k}, lane {lane} of {}",
+                    D::LANES
+                );
+            }
+        }
+        assert_eq!(d.rows(columns)[..D::LANES], records[..D::LANES]);
+
+        // From columns that were no rows before.
+        let words = [(); 4].map(|()| [(); MAX_LANES].map(|()| rng.bits()));
+        let rows = d.rows(words.map(|column| d.word(&column[..D::LANES])));
+        for (lane, row) in rows[..D::LANES].iter().enumerate() {
+            assert_eq!(
+                *row,
+                words.map(|column| column[lane]),
+                "lane {lane} of {}",
+                D::LANES
+            );
+        }
+    }
+}
+
+#[test]
+fn columns_and_rows_are_inverse_and_in_the_order_of_lanes() {
+    let data = SceneData::default();
+    let buffers = data.buffers();
+    transpose(Scalar::new(&buffers));
+    dispatch!(Level::new(), simd => {
+        transpose(Lanes4::new(simd, &buffers));
+        transpose(Lanes8::new(simd, &buffers));
+        transpose(Lanes16::new(simd, &buffers));
+    });
 }
 
 #[test]

@@ -1,0 +1,154 @@
+//! The device by itself: every sample of every pixel is taken once, however paths share a stream, and a render ends when
+//! it is told to.
+
+use std::ops::ControlFlow;
+
+use residual_device_cpu::{Counters, CpuDevice, LaneCount, RenderOptions, TileJob, TileRenderer};
+use residual_scenegen::desc::{MaterialDesc, Projection, SceneDesc};
+use residual_scenegen::plan::{Plan, PlanOptions, plan};
+use residual_tests::fixtures::{self, Builder, color, material, matte, sheet};
+use residual_tests::pictures::first_difference;
+use residual_tests::{Look, Prepared};
+
+/// Of the image; tiles lie somewhere in it.
+const SIZE: [u32; 2] = [90, 80];
+
+fn planned(scene: &SceneDesc) -> Plan {
+    let options = PlanOptions {
+        size: SIZE,
+        ..PlanOptions::default()
+    };
+    plan(scene, &options).unwrap()
+}
+
+fn job(tile: [u32; 4], samples: [u32; 2]) -> TileJob {
+    TileJob {
+        tile,
+        image: SIZE,
+        samples,
+        max_depth: 6,
+        roulette_from: 3,
+        seed: 5,
+    }
+}
+
+/// Renders a job by interpretation: its colours by sample, row and column.
+fn colors(prepared: &Prepared<'_>, job: &TileJob) -> (Vec<[f32; 3]>, Counters) {
+    let count = job.rect().area() * job.samples[1] as usize;
+    // What was there before must not show.
+    let mut radiance = vec![f32::NAN; 3 * count];
+    let renderer = prepared.interpreter();
+    let counters = renderer.render_tile(&prepared.view(), job, &mut radiance);
+    (radiance.as_chunks().0.to_vec(), counters)
+}
+
+/// A lamp that fills the picture.
+fn lamp() -> SceneDesc {
+    let mut b = Builder::new("lamp");
+    let lamp = MaterialDesc {
+        emission: color([1.0; 3]),
+        ..material("lamp", matte([0.0; 3]))
+    };
+    b.add(
+        lamp,
+        [sheet([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0])],
+    );
+    let projection = Projection::Perspective { yfov: 0.75 };
+    b.camera("front", [0.0, 0.0, 3.0], [0.0; 3], projection);
+    b.finish()
+}
+
+/// Each is of colour 1: one left out would be black, one taken twice too bright.
+#[test]
+fn every_sample_of_every_pixel_is_taken_once() {
+    // Without anything in it, a scene is under a white sky.
+    for scene in [lamp(), SceneDesc::default()] {
+        let plan = planned(&scene);
+        for lanes in LaneCount::ALL {
+            let prepared = Prepared::new(&plan, lanes);
+            for [width, height] in [[1, 1], [3, 5], [17, 9], [64, 64]] {
+                for samples in [1, 5] {
+                    let job = TileJob {
+                        max_depth: 1,
+                        ..job([13, 7, width, height], [3, samples])
+                    };
+                    let (colors, counters) = colors(&prepared, &job);
+                    let what = format!("{} with {lanes} lanes: {job:?}", scene.name);
+                    assert_eq!(
+                        colors.iter().position(|rgb| *rgb != [1.0; 3]),
+                        None,
+                        "{what}"
+                    );
+                    assert_eq!(counters.camera_rays, colors.len() as u64, "{what}");
+                    assert_eq!(
+                        (counters.bounce_rays, counters.shadow_rays),
+                        (0, 0),
+                        "{what}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A stream that is filled up again as paths end holds the same paths as one that is not.
+#[test]
+fn jobs_longer_than_a_stream_are_those_of_their_parts() {
+    let plan = planned(&fixtures::room());
+    let whole = job([13, 7, 64, 64], [2, 4]);
+    let scalar = Prepared::new(&plan, LaneCount::One);
+    let mut expected = vec![[f32::NAN; 3]; whole.rect().area() * 4];
+    for sample in 0..4 {
+        for (x, y) in (0..16).map(|part| (part % 4 * 16, part / 4 * 16)) {
+            let part = job([13 + x, 7 + y, 16, 16], [2 + sample, 1]);
+            let (colors, _) = colors(&scalar, &part);
+            for (row, colors) in (y..).zip(colors.chunks(16)) {
+                let at = ((sample * 64 + row) * 64 + x) as usize;
+                expected[at..at + colors.len()].copy_from_slice(colors);
+            }
+        }
+    }
+    for lanes in LaneCount::ALL {
+        let (colors, _) = colors(&Prepared::new(&plan, lanes), &whole);
+        assert_eq!(first_difference(&expected, &colors), None, "{lanes} lanes");
+    }
+}
+
+#[test]
+fn a_render_that_is_told_to_stop_ends_after_the_pass() {
+    let plan = planned(&fixtures::room());
+    let prepared = Prepared::new(&plan, LaneCount::native());
+    let renderer = prepared.interpreter();
+    let device = CpuDevice::new(2).unwrap();
+    let options = RenderOptions {
+        size: SIZE,
+        samples: Some(1_000_000),
+        time: None,
+        max_depth: 8,
+        seed: 0,
+    };
+    for passes in [1, 3] {
+        let mut told = Vec::new();
+        let (film, report) = device.render(
+            || &renderer,
+            &prepared.view(),
+            &options,
+            |progress| {
+                told.push(progress.samples);
+                if told.len() < passes {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
+            },
+        );
+        assert_eq!(told.len(), passes);
+        let samples = told[passes - 1];
+        assert_eq!(film.samples(), u64::from(samples));
+        let pixels = u64::from(SIZE[0] * SIZE[1]);
+        assert_eq!(report.counters.camera_rays, pixels * u64::from(samples));
+        let expected = prepared.interpret(&Look::new(SIZE, samples));
+        assert_eq!(first_difference(&expected.image(), &film.image()), None);
+        assert_eq!(film.error(), expected.error());
+    }
+}
