@@ -46,6 +46,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let samples_done = AtomicU32::new(0);
     let stop = stop_on_interrupt()?;
     let mut bvh_time = Duration::ZERO;
+    let mut bvh_bytes = 0;
     let mut done = None;
     let mut render_cpu = None;
     std::thread::scope(|scope| {
@@ -57,6 +58,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         let triangles = plan.data.triangle_count();
         let bvh = AnyBvh::build(&plan.data, LaneCount::native(), quality(triangles));
         bvh_time = bvh_start.elapsed();
+        bvh_bytes = bvh.memory_bytes();
         if args.tier == TierArg::Specialized
             && let Some(compilation) = compilation
         {
@@ -157,6 +159,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         lanes: lanes.count(),
         compiled_from: (from != u32::MAX).then_some(from),
         render_cpu,
+        bvh_bytes,
     };
     if !args.quiet {
         summary(

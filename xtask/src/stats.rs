@@ -28,6 +28,8 @@ pub(crate) struct Statistics<'a> {
     pub(crate) compiled_from: Option<u32>,
     /// CPU seconds of the rendering alone, where the system tells.
     pub(crate) render_cpu: Option<f64>,
+    /// Bytes of the hierarchy.
+    pub(crate) bvh_bytes: usize,
 }
 
 /// The CPU seconds of this process so far, where the system tells.
@@ -53,6 +55,10 @@ fn peak_memory() -> Option<f64> {
             .ok()?
             / 1024.0,
     )
+}
+
+fn mib(bytes: usize) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
 }
 
 impl Statistics<'_> {
@@ -107,6 +113,10 @@ impl Statistics<'_> {
             "mean": self.film.mean(),
             "error": error.map(|e| json!({ "relmse": e.relmse, "ci95": e.ci95 })),
             "invalid_samples": self.film.invalid_samples(),
+            "memory_mib": {
+                "scene": mib(self.plan.data.memory_bytes()),
+                "hierarchy": mib(self.bvh_bytes),
+            },
             "peak_rss_mib": peak_memory(),
         })
     }
@@ -129,6 +139,7 @@ impl Statistics<'_> {
         let mut text = format!(
             "load {:.2} s, hierarchy {:.2} s, compile {:.2} s, render {render:.2} s\n\
              {:.2} Msamples/s, {:.2} Mrays/s, {} threads, {} lanes, {}\n\
+             scene {:.1} MiB, hierarchy {:.1} MiB, at most {:.1} MiB in all\n\
              mean {r:.5} {g:.5} {b:.5}\n",
             self.stages.load.as_secs_f64(),
             self.stages.bvh.as_secs_f64(),
@@ -138,6 +149,9 @@ impl Statistics<'_> {
             self.report.threads,
             self.lanes,
             self.tier,
+            mib(self.plan.data.memory_bytes()),
+            mib(self.bvh_bytes),
+            peak_memory().unwrap_or(f64::NAN),
         );
         for (name, seconds) in stages {
             text.push_str(&format!(
