@@ -144,13 +144,36 @@ impl<D: Domain> Place<D> {
     }
 }
 
+/// The row of reals of a vertex.
+#[inline(always)]
+fn row_of<D: Domain>(d: D, buffer: Buffer, vertex: D::U) -> [D::F; 4] {
+    let [[x, y, z, w]] = d.load_rows(buffer, vertex << 2);
+    [
+        d.from_bits(x),
+        d.from_bits(y),
+        d.from_bits(z),
+        d.from_bits(w),
+    ]
+}
+
 /// An attribute at the corners of a triangle: a row each.
 struct Corners<'a, D: Domain> {
     rows: [[D::F; 4]; 3],
     weights: &'a [D::F; 3],
 }
 
-impl<D: Domain> Corners<'_, D> {
+impl<'a, D: Domain> Corners<'a, D> {
+    #[inline(always)]
+    fn load(d: D, buffer: Buffer, vertices: [D::U; 4], weights: &'a [D::F; 3]) -> Self {
+        let [a, b, c, _] = vertices;
+        let rows = [
+            row_of(d, buffer, a),
+            row_of(d, buffer, b),
+            row_of(d, buffer, c),
+        ];
+        Self { rows, weights }
+    }
+
     /// Component `k`, interpolated.
     #[inline(always)]
     fn component(&self, d: D, k: usize) -> D::F {
@@ -187,23 +210,7 @@ impl<D: Domain> Surface<D> {
             let [row] = d.load_rows(Buffer::Indices, prim << 2);
             row
         };
-        let corner = |buffer: Buffer, vertex: D::U| {
-            let [[x, y, z, w]] = d.load_rows(buffer, vertex << 2);
-            [
-                d.from_bits(x),
-                d.from_bits(y),
-                d.from_bits(z),
-                d.from_bits(w),
-            ]
-        };
-        let corners = |buffer: Buffer| Corners::<D> {
-            rows: [
-                corner(buffer, vertices[0]),
-                corner(buffer, vertices[1]),
-                corner(buffer, vertices[2]),
-            ],
-            weights: &place.weights,
-        };
+        let corners = |buffer: Buffer| Corners::load(d, buffer, vertices, &place.weights);
         let outward = normal.normalize_any(d);
         let wo = -dir.normalize(d);
         let cos_outward = outward.dot(d, wo);
