@@ -57,7 +57,7 @@ impl<D, S, L: ?Sized> Shade<'_, D, S, L> {
         let d = self.d;
         for (places, valid) in lanes::<D>(self.range.clone()) {
             let members = self.hits.members(places);
-            let (path, place) = self.paths.load(d, |lane| members[lane]);
+            let (path, place) = self.paths.load(d, &members);
             let hit = self.hits.load(d, &members);
             let wo = -path.ray.dir;
             let mut surface = Surface::new(d, material.attributes(), &hit, path.ray.dir);
@@ -113,7 +113,7 @@ pub(crate) fn shade_misses<D, S, L>(
 {
     for (places, valid) in lanes::<D>(range) {
         let members = hits.members(places);
-        let (path, place) = paths.load(d, |lane| members[lane]);
+        let (path, place) = paths.load(d, &members);
         let seen = tracer.on_miss(d, &path, lights);
         add(d, valid, place.pixel, seen, radiance);
     }

@@ -129,25 +129,25 @@ impl PathStream {
         &self.rays[..self.len]
     }
 
-    /// `LANES` paths: `member(lane)` is the number of each.
+    /// `LANES` paths of these numbers.
     #[inline(always)]
     pub(crate) fn load<D: Lanes>(
         &self,
         d: D,
-        member: impl Fn(usize) -> usize,
+        members: &[usize; MAX_LANES],
     ) -> (Path<D>, Place<D::U>) {
         let real = |x: D::U| d.from_bits(x);
         let [ox, oy, oz, _] = d.columns(|lane| {
-            let Ray { org: [x, y, z], .. } = self.rays[member(lane)];
+            let Ray { org: [x, y, z], .. } = self.rays[members[lane]];
             [x.to_bits(), y.to_bits(), z.to_bits(), 0]
         });
         let [dx, dy, dz, tmax] = d.columns(|lane| {
-            let ray = &self.rays[member(lane)];
+            let ray = &self.rays[members[lane]];
             let [x, y, z] = ray.dir;
             [x.to_bits(), y.to_bits(), z.to_bits(), ray.tmax.to_bits()]
         });
-        let [r, g, b, pdf] = d.columns(|lane| self.states[member(lane)].weight);
-        let [key, index, pixel, depth] = d.columns(|lane| self.states[member(lane)].place);
+        let [r, g, b, pdf] = d.columns(|lane| self.states[members[lane]].weight);
+        let [key, index, pixel, depth] = d.columns(|lane| self.states[members[lane]].place);
         let path = Path {
             ray: LaneRay {
                 org: vec3(real(ox), real(oy), real(oz)),
@@ -310,7 +310,7 @@ impl SortedHits {
         members
     }
 
-    /// The hits of `LANES` paths.
+    /// The hits of `LANES` paths of these numbers.
     #[inline(always)]
     pub(crate) fn load<D: Lanes>(&self, d: D, members: &[usize; MAX_LANES]) -> surface::Hit<D> {
         let [_, u, v, prim] = d.columns(|lane| {

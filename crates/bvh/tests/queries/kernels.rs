@@ -435,7 +435,7 @@ fn every_kernel_agrees_with_brute_force() {
 /// As many rays as the variable RAYS says, ten million if it is not set:
 /// `RAYS=1e7 cargo test --release -p residual-bvh -- --ignored --nocapture ten_million`.
 #[test]
-#[ignore = "takes an hour or so on one core"]
+#[ignore = "takes twenty minutes on one core"]
 fn ten_million_rays_agree_with_brute_force() {
     let rays = std::env::var("RAYS").map_or(1e7, |rays| rays.parse().expect("a number of rays"));
     check(&trials((rays / BATCH as f64).ceil() as usize));
