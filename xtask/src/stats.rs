@@ -93,15 +93,9 @@ impl Statistics<'_> {
                 "render": render,
                 "total": self.stages.total.as_secs_f64(),
             },
-            "thread_seconds": {
-                "emit": c.emit,
-                "trace_camera": c.trace_camera,
-                "trace_bounce": c.trace_bounce,
-                "trace_shadow": c.trace_shadow,
-                "sort": c.sort,
-                "shade": c.shade,
-                "film": c.film,
-            },
+            "thread_seconds": serde_json::Map::from_iter(
+                c.stages().map(|(name, seconds)| (name.to_owned(), json!(seconds))),
+            ),
             "compiled_from_spp": self.compiled_from,
             "msamples_per_s": self.samples() / render / 1e6,
             "msamples_per_cpu_s": self.render_cpu.map(|cpu| self.samples() / cpu / 1e6),
