@@ -12,14 +12,10 @@ use super::{Buffer, Buffers, Bundle, Domain, Scalar};
 pub trait Lanes: Domain {
     /// How many numbers there are at once.
     const LANES: usize;
-    /// `LANES` numbers; `from` must be that long.
-    fn real(self, from: &[f32]) -> Self::F;
     /// `LANES` integers; `from` must be that long.
     fn word(self, from: &[u32]) -> Self::U;
     /// The mask's bits, lane 0 lowest.
     fn bits(self, mask: Self::M) -> u32;
-    /// Stores `LANES` numbers; `to` must be that long.
-    fn store(self, value: Self::F, to: &mut [f32]);
     /// Stores `LANES` integers; `to` must be that long.
     fn store_word(self, value: Self::U, to: &mut [u32]);
     /// The four columns of `LANES` rows of four words: what a record for each lane holds.
@@ -34,20 +30,12 @@ pub const MAX_LANES: usize = 16;
 impl Lanes for Scalar<'_> {
     const LANES: usize = 1;
     #[inline(always)]
-    fn real(self, from: &[f32]) -> f32 {
-        from[0]
-    }
-    #[inline(always)]
     fn word(self, from: &[u32]) -> Uint {
         Uint(from[0])
     }
     #[inline(always)]
     fn bits(self, mask: bool) -> u32 {
         u32::from(mask)
-    }
-    #[inline(always)]
-    fn store(self, value: f32, to: &mut [f32]) {
-        to[0] = value;
     }
     #[inline(always)]
     fn store_word(self, value: Uint, to: &mut [u32]) {
@@ -236,20 +224,12 @@ macro_rules! lanes {
         impl<S: Simd> Lanes for $name<'_, S> {
             const LANES: usize = $lanes;
             #[inline(always)]
-            fn real(self, from: &[f32]) -> Self::F {
-                $real::from_slice(self.simd, from)
-            }
-            #[inline(always)]
             fn word(self, from: &[u32]) -> Self::U {
                 $word::from_slice(self.simd, from)
             }
             #[inline(always)]
             fn bits(self, mask: Self::M) -> u32 {
                 mask.to_bitmask() as u32
-            }
-            #[inline(always)]
-            fn store(self, value: Self::F, to: &mut [f32]) {
-                value.store_slice(to);
             }
             #[inline(always)]
             fn store_word(self, value: Self::U, to: &mut [u32]) {

@@ -1,6 +1,7 @@
 //! Image textures: nearest and bilinear, repeated, mirrored or clamped, in three texel formats.
 //!
-//! What an image is (its place among the texels, width, height) is data: a row of the material's parameter block. How it is read (wrapping, filtering, format, coordinates) is structure: type parameters, for
+//! What an image is (its place among the texels, width, height) is data: a row of the material's parameter block.
+//! How it is read (wrapping, filtering, format, coordinates) is structure: type parameters, for
 //! which the `Any…` enumerations stand in where a renderer is interpreted.
 //! Texel centres lie at half-integers; row 0 is at v = 0.
 
