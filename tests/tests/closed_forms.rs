@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use residual_bvh::{BuildQuality, Culling};
+use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView};
 use residual_render::camera::AnyCamera;
 use residual_render::domain::Buffer;
@@ -84,7 +84,6 @@ fn scene(
         },
         camera: AnyCamera::Perspective,
         sampler: AnySampler::Sobol,
-        culling: Culling::None,
     };
     (structure, data)
 }

@@ -1,86 +1,159 @@
-//! `cargo xtask inspect`: effects in and out with the reason for each, programs, parameters.
+//! `cargo xtask inspect`: effects in and out with the reason for each, what the plan decided, programs.
 
 use anyhow::Result;
-use residual_render::domain::Buffer;
+use residual_device_cpu::LaneCount;
 use residual_scenegen::effects::{Effect, Effects};
-use serde_json::json;
+use residual_scenegen::plan::{BindingTimes, Decision, Plan};
+use serde_json::{Map, Value, json};
 
 use crate::args::InspectArgs;
+use crate::render::quality;
 use crate::scene;
 
 pub(crate) fn run(args: &InspectArgs) -> Result<()> {
     let (plan, _) = scene::load(&args.scene)?;
     let effects = Effects::of(&plan);
     if args.json {
-        let table: serde_json::Map<_, _> = Effect::ALL
-            .iter()
-            .map(|&effect| {
-                let reasons = effects.reasons(effect);
-                (
-                    effect.to_string(),
-                    json!({ "in": !reasons.is_empty(), "called_for_by": reasons }),
-                )
-            })
-            .collect();
-        let programs: Vec<_> = plan
-            .structure
-            .programs
-            .iter()
-            .zip(&plan.materials)
-            .map(|(program, materials)| json!({ "materials": materials, "inputs": program.inputs.len() }))
-            .collect();
-        let report = json!({
-            "scene": plan.name,
-            "triangles": plan.data.triangle_count(),
-            "camera": plan.camera_name,
-            "effects": table,
-            "programs": programs,
-            "lights": plan.light_counts.iter().sum::<usize>(),
-            "parameter_words": plan.data.buffer(Buffer::Params).len(),
-            "memory_mib": plan.data.memory_bytes() as f64 / (1 << 20) as f64,
-        });
-        println!("{report}");
-        return Ok(());
-    }
-    println!(
-        "{}: {} triangles, {} lights, camera {:?}, {:.1} MiB of data",
-        plan.name,
-        plan.data.triangle_count(),
-        plan.light_counts.iter().sum::<usize>(),
-        plan.camera_name,
-        plan.data.memory_bytes() as f64 / (1 << 20) as f64
-    );
-    println!("\neffects in:");
-    for effect in effects.iter() {
-        println!(
-            "  {:<22} {}",
-            effect.to_string(),
-            shortened(effects.reasons(effect))
-        );
-    }
-    let out: Vec<_> = Effect::ALL
-        .iter()
-        .filter(|&&effect| effects.reasons(effect).is_empty())
-        .map(ToString::to_string)
-        .collect();
-    println!("\neffects out: {}", out.join(", "));
-    println!("\nprograms:");
-    for (number, materials) in plan.materials.iter().enumerate() {
-        println!("  {number:>3}  {}", materials.join(", "));
+        println!("{}", report(&plan, &effects));
+    } else {
+        print(&plan, &effects);
     }
     Ok(())
 }
 
-/// The first few reasons.
-fn shortened(reasons: &[String]) -> String {
-    const SHOWN: usize = 3;
-    let first = reasons
+/// What the plan decided, and what this machine adds.
+fn decisions(plan: &Plan) -> Vec<Decision> {
+    let mut decisions = plan.decisions();
+    let lanes = LaneCount::native();
+    decisions.push(Decision {
+        about: "lanes",
+        text: format!("{lanes}, which suit this machine"),
+    });
+    decisions.push(Decision {
+        about: "hierarchy",
+        text: format!(
+            "{} children a node, as many as there are lanes; quality {:?}, by the number of triangles",
+            lanes.count().max(4),
+            quality(plan.data.triangle_count())
+        ),
+    });
+    decisions
+}
+
+fn report(plan: &Plan, effects: &Effects) -> Value {
+    let table: Map<_, _> = Effect::ALL
         .iter()
-        .take(SHOWN)
-        .cloned()
-        .collect::<Vec<_>>()
-        .join("; ");
-    match reasons.len().saturating_sub(SHOWN) {
+        .map(|&effect| {
+            let row = json!({
+                "in": effects.has(effect),
+                "called_for_by": effects.reasons(effect),
+                "changes_nothing": effects.dismissed(effect),
+            });
+            (effect.to_string(), row)
+        })
+        .collect();
+    let programs: Vec<_> = plan
+        .structure
+        .programs
+        .iter()
+        .zip(&plan.materials)
+        .map(|(program, materials)| {
+            let names: Vec<_> = materials.iter().map(|material| &material.name).collect();
+            let times = BindingTimes::of(program);
+            json!({
+                "materials": names,
+                "inputs": program.inputs.iter().map(|input| input.name).collect::<Vec<_>>(),
+                "constants": times.constants,
+                "parameters": times.parameters,
+                "images": times.images,
+                "vertices": times.vertices,
+            })
+        })
+        .collect();
+    let dismissed: Vec<_> = plan
+        .dismissed
+        .iter()
+        .map(|dismissed| json!({ "place": dismissed.place, "reason": dismissed.reason }))
+        .collect();
+    let plan_table: Map<_, _> = decisions(plan)
+        .into_iter()
+        .map(|Decision { about, text }| (about.to_owned(), text.into()))
+        .collect();
+    json!({
+        "scene": plan.name,
+        "triangles": plan.data.triangle_count(),
+        "camera": plan.camera_name,
+        "effects": table,
+        "changes_nothing": dismissed,
+        "plan": plan_table,
+        "programs": programs,
+        "lights": light_count(plan),
+        "memory_mib": memory_mib(plan),
+    })
+}
+
+fn light_count(plan: &Plan) -> usize {
+    plan.lights.iter().map(|kind| kind.count).sum()
+}
+
+fn memory_mib(plan: &Plan) -> f64 {
+    plan.data.memory_bytes() as f64 / f64::from(1 << 20)
+}
+
+fn print(plan: &Plan, effects: &Effects) {
+    println!(
+        "{}: {} triangles, {} lights, camera {:?}, {:.1} MiB of data",
+        plan.name,
+        plan.data.triangle_count(),
+        light_count(plan),
+        plan.camera_name,
+        memory_mib(plan)
+    );
+    println!("\neffects in:");
+    for effect in effects.iter() {
+        let reasons = shortened(effects.reasons(effect));
+        println!("  {:<22} {reasons}", effect.to_string());
+    }
+    let out: Vec<_> = Effect::ALL
+        .iter()
+        .filter(|&&effect| !effects.has(effect))
+        .map(ToString::to_string)
+        .collect();
+    println!("\neffects out: {}", out.join(", "));
+    if !plan.dismissed.is_empty() {
+        println!("\nin the file, without effect:");
+        for dismissed in &plan.dismissed {
+            println!("  {}: {}", dismissed.place, dismissed.reason);
+        }
+    }
+    println!("\nplan:");
+    for Decision { about, text } in decisions(plan) {
+        println!("  {about:<14} {text}");
+    }
+    println!("\nprograms (constants, parameters, images, vertex attributes):");
+    let programs = plan.structure.programs.iter().zip(&plan.materials);
+    for (number, (program, materials)) in programs.enumerate() {
+        let times = BindingTimes::of(program);
+        let names: Vec<_> = materials
+            .iter()
+            .map(|material| format!("{:?}", material.name))
+            .collect();
+        println!(
+            "  {number:>3} ({}, {}, {}, {}) {}",
+            times.constants,
+            times.parameters,
+            times.images,
+            times.vertices,
+            shortened(&names)
+        );
+    }
+}
+
+/// The first few of a list.
+fn shortened(list: &[String]) -> String {
+    const SHOWN: usize = 4;
+    let first = list[..list.len().min(SHOWN)].join("; ");
+    match list.len().saturating_sub(SHOWN) {
         0 => first,
         more => format!("{first}; and {more} more"),
     }

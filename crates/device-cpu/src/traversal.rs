@@ -30,6 +30,30 @@ pub struct AnyBvh {
     tree: Tree,
     /// Some triangles are seen from their front only.
     sided: bool,
+    lets_through: Marks,
+}
+
+/// A bit for each triangle.
+#[derive(Debug)]
+struct Marks(Vec<u64>);
+
+impl Marks {
+    fn new(of_triangles: &[bool]) -> Self {
+        let word = |marks: &[bool]| {
+            let bits = marks
+                .iter()
+                .zip(0..)
+                .map(|(&mark, bit)| u64::from(mark) << bit);
+            bits.fold(0, |word, bit| word | bit)
+        };
+        Self(of_triangles.chunks(64).map(word).collect())
+    }
+
+    #[inline(always)]
+    fn has(&self, triangle: u32) -> bool {
+        let word = self.0.get(triangle as usize / 64);
+        word.is_some_and(|word| word >> (triangle % 64) & 1 == 1)
+    }
 }
 
 #[derive(Debug)]
@@ -52,7 +76,11 @@ impl AnyBvh {
             LaneCount::Eight => Tree::Eight(build(&positions, &triangles, sides, quality)),
             LaneCount::Sixteen => Tree::Sixteen(build(&positions, &triangles, sides, quality)),
         };
-        Self { tree, sided }
+        Self {
+            tree,
+            sided,
+            lets_through: Marks::new(&data.lets_through),
+        }
     }
 
     /// Bytes of its nodes and triangles.
@@ -65,8 +93,11 @@ impl AnyBvh {
     }
 }
 
-/// What alpha lets through.
-struct Covered<'a>(&'a Alpha<'a>);
+/// What alpha leaves. It is asked about triangles that may let rays through, only: it is a call across libraries.
+struct Covered<'a> {
+    alpha: &'a Alpha<'a>,
+    lets_through: &'a Marks,
+}
 
 impl HitFilter for Covered<'_> {
     const CULLING: Culling = Culling::PerTriangle;
@@ -74,26 +105,29 @@ impl HitFilter for Covered<'_> {
 
     #[inline(always)]
     fn accept(&self, ray: &Ray, hit: &Hit) -> bool {
-        (self.0)(ray, hit)
+        !self.lets_through.has(hit.prim) || (self.alpha)(ray, hit)
     }
 }
 
 /// Calls a query of packets as wide as the hierarchy with the filter that the scene calls for. Packets fall back to
 /// single rays where neighbours disagree, so they serve all streams.
 macro_rules! trace {
-    (@ $simd:ident, $bvh:ident, $width:literal, $sided:expr, $alpha:ident, $query:ident($rays:ident, $answers:ident)) => {{
+    (@ $self:ident, $simd:ident, $bvh:ident, $width:literal, $alpha:ident, $query:ident($rays:ident, $answers:ident)) => {{
         let (kernel, bvh) = (Hybrid::<$width>, $bvh.view());
         match $alpha {
-            Some(alpha) => kernel.$query($simd, Watertight, bvh, $rays, $answers, &Covered(alpha)),
-            None if $sided => kernel.$query($simd, Watertight, bvh, $rays, $answers, &MarkedHits),
+            Some(alpha) => {
+                let covered = Covered { alpha, lets_through: &$self.lets_through };
+                kernel.$query($simd, Watertight, bvh, $rays, $answers, &covered)
+            }
+            None if $self.sided => kernel.$query($simd, Watertight, bvh, $rays, $answers, &MarkedHits),
             None => kernel.$query($simd, Watertight, bvh, $rays, $answers, &AllHits),
         }
     }};
     ($self:ident, $alpha:ident, $query:ident($rays:ident, $answers:ident)) => {
         dispatch!(Level::new(), simd => match &$self.tree {
-            Tree::Four(bvh) => trace!(@ simd, bvh, 4, $self.sided, $alpha, $query($rays, $answers)),
-            Tree::Eight(bvh) => trace!(@ simd, bvh, 8, $self.sided, $alpha, $query($rays, $answers)),
-            Tree::Sixteen(bvh) => trace!(@ simd, bvh, 16, $self.sided, $alpha, $query($rays, $answers)),
+            Tree::Four(bvh) => trace!(@ $self, simd, bvh, 4, $alpha, $query($rays, $answers)),
+            Tree::Eight(bvh) => trace!(@ $self, simd, bvh, 8, $alpha, $query($rays, $answers)),
+            Tree::Sixteen(bvh) => trace!(@ $self, simd, bvh, 16, $alpha, $query($rays, $answers)),
         })
     };
 }

@@ -13,7 +13,7 @@ use residual_render::material::Material;
 use residual_render::math::elementary;
 use residual_render::math::vec3::vec3;
 use residual_render::program::{
-    AlphaNode, BoxedAlpha, BoxedMaterial, BsdfNode, ColorNode, Culling, EmissionNode, ImageNode,
+    AlphaNode, BoxedAlpha, BoxedMaterial, BsdfNode, ColorNode, EmissionNode, ImageNode,
     InputNode, Interpreted, LightNode, NormalNode, Program, ScalarNode, SourceNode, Structure,
 };
 use residual_render::sampler::{AnySampler, SampleKey, Sampler};
@@ -450,7 +450,6 @@ fn structure(lights: Vec<LightNode>) -> Structure {
         lights,
         camera: AnyCamera::Perspective,
         sampler: AnySampler::Sobol,
-        culling: Culling::None,
     }
 }
 

@@ -9,6 +9,8 @@
 
 use glam::{Affine3A, Quat, Vec2, Vec3, Vec4};
 
+use crate::effect::Effect;
+
 /// A scene, ready to be analysed.
 #[derive(Debug, Clone, Default)]
 pub struct SceneDesc {
@@ -32,6 +34,19 @@ pub struct SceneDesc {
     pub environment: Option<EnvironmentDesc>,
     /// What could not be taken over faithfully.
     pub warnings: Vec<Warning>,
+    /// What is in the file and changes nothing.
+    pub dismissed: Vec<Dismissed>,
+}
+
+/// Something of the file that changes nothing in the image, so that the renderer goes without.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Dismissed {
+    /// The effect that it would have called for, if we know one.
+    pub effect: Option<Effect>,
+    /// Where: as in [`Warning::place`].
+    pub place: String,
+    /// Why it changes nothing.
+    pub reason: String,
 }
 
 /// Something of the file that the image will lack or show differently.

@@ -3,77 +3,23 @@
 //! They are read off the plan, so the table cannot disagree with the program that is emitted from it.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use residual_render::alpha::AlphaTest;
 use residual_render::camera::AnyCamera;
 use residual_render::program::{
-    BsdfNode, ColorNode, Culling, ImageNode, LightNode, Program, ScalarNode, SourceNode,
+    BsdfNode, ColorNode, ImageNode, LightNode, Program, ScalarNode, SourceNode,
 };
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap};
 
-use crate::plan::Plan;
+use crate::plan::{MaterialUse, Plan};
 
-macro_rules! effects {
-    ($($(#[doc = $doc:literal])* $name:ident = $text:literal,)*) => {
-        /// Something a renderer can simulate.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum Effect {
-            $(#[doc = $text] $name,)*
-        }
-
-        impl Effect {
-            /// All effects.
-            pub const ALL: &[Self] = &[$(Self::$name,)*];
-        }
-
-        impl fmt::Display for Effect {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(match self { $(Self::$name => $text,)* })
-            }
-        }
-    };
-}
-
-effects! {
-    DiffuseReflection = "diffuse reflection",
-    GlossyCoat = "glossy coat",
-    MetallicReflection = "metallic reflection",
-    PhongReflection = "Phong reflection",
-    ThinTransmission = "thin transmission",
-    Refraction = "refraction",
-    MixedLobes = "mixed lobes",
-    Textures = "textures",
-    NearestFilter = "nearest filter",
-    BilinearFilter = "bilinear filter",
-    RepeatWrap = "repeat wrap",
-    MirrorWrap = "mirror wrap",
-    ClampWrap = "clamp wrap",
-    SrgbTexels = "sRGB texels",
-    LinearTexels = "linear texels",
-    FloatTexels = "float texels",
-    TextureTransforms = "texture transforms",
-    SecondUvSet = "second UV set",
-    VertexColors = "vertex colours",
-    SmoothNormals = "smooth normals",
-    NormalMaps = "normal maps",
-    AlphaMasks = "alpha masks",
-    AlphaBlending = "alpha blending",
-    BackFaceCulling = "back-face culling",
-    EmittingSurfaces = "emitting surfaces",
-    TexturedEmission = "textured emission",
-    PointLights = "point lights",
-    SpotLights = "spot lights",
-    DirectionalLights = "directional lights",
-    Environment = "environment",
-    PerspectiveCamera = "perspective camera",
-    OrthographicCamera = "orthographic camera",
-}
+pub use crate::effect::Effect;
 
 /// The effects that are in, each with those that call for it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Effects {
     reasons: BTreeMap<Effect, Vec<String>>,
+    dismissed: BTreeMap<Effect, Vec<String>>,
 }
 
 impl Effects {
@@ -81,31 +27,43 @@ impl Effects {
     pub fn of(plan: &Plan) -> Self {
         let mut effects = Self::default();
         let structure = &plan.structure;
-        for (program, names) in structure.programs.iter().zip(&plan.materials) {
-            effects.add_program(program, &names.join(", "));
+        for (program, materials) in structure.programs.iter().zip(&plan.materials) {
+            for material in materials {
+                effects.add_program(program, &Caller::new(material));
+            }
         }
-        for (light, count) in structure.lights.iter().zip(&plan.light_counts) {
-            effects.add_light(light, &format!("lights ({count})"));
+        for (light, of_kind) in structure.lights.iter().zip(&plan.lights) {
+            for source in &of_kind.sources {
+                effects.add(light_effect(light), source);
+            }
         }
-        match structure.culling {
-            Culling::None => {}
-            Culling::Back => effects.add(Effect::BackFaceCulling, "all triangles"),
-            Culling::PerTriangle => effects.add(Effect::BackFaceCulling, "some triangles"),
+        let camera = match structure.camera {
+            AnyCamera::Perspective => Effect::PerspectiveCamera,
+            AnyCamera::Orthographic => Effect::OrthographicCamera,
+        };
+        effects.add(camera, &format!("camera {:?}", plan.camera_name));
+        for dismissed in &plan.dismissed {
+            if let Some(effect) = dismissed.effect {
+                let reasons = effects.dismissed.entry(effect).or_default();
+                reasons.push(format!("{}: {}", dismissed.place, dismissed.reason));
+            }
         }
-        let camera = format!("camera {:?}", plan.camera_name);
-        effects.add(
-            match structure.camera {
-                AnyCamera::Perspective => Effect::PerspectiveCamera,
-                AnyCamera::Orthographic => Effect::OrthographicCamera,
-            },
-            &camera,
-        );
         effects
     }
 
     /// Who calls for an effect; empty where it is out.
     pub fn reasons(&self, effect: Effect) -> &[String] {
         self.reasons.get(&effect).map_or(&[], Vec::as_slice)
+    }
+
+    /// Who seems to call for an effect, and why it would change nothing there.
+    pub fn dismissed(&self, effect: Effect) -> &[String] {
+        self.dismissed.get(&effect).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether an effect is in.
+    pub fn has(&self, effect: Effect) -> bool {
+        self.reasons.contains_key(&effect)
     }
 
     /// The effects that are in.
@@ -120,18 +78,22 @@ impl Effects {
         }
     }
 
-    fn add_program(&mut self, program: &Program, who: &str) {
+    fn add_program(&mut self, program: &Program, who: &Caller<'_>) {
+        let place = &who.place;
         if program.attributes.normals {
-            self.add(Effect::SmoothNormals, who);
+            self.add(Effect::SmoothNormals, place);
         }
         if program.normal.is_some() {
-            self.add(Effect::NormalMaps, who);
+            self.add(Effect::NormalMaps, place);
+        }
+        if who.material.culled {
+            self.add(Effect::BackFaceCulling, place);
         }
         if let Some(emission) = program.emission {
-            self.add(Effect::EmittingSurfaces, who);
+            self.add(Effect::EmittingSurfaces, place);
             if matches!(&program.inputs[emission.radiance.0].source, SourceNode::Color(node) if has_image(node))
             {
-                self.add(Effect::TexturedEmission, who);
+                self.add(Effect::TexturedEmission, place);
             }
         }
         if let Some(alpha) = &program.alpha {
@@ -141,7 +103,7 @@ impl Effects {
                     AlphaTest::Mask(_) => Effect::AlphaMasks,
                     AlphaTest::Blend => Effect::AlphaBlending,
                 },
-                who,
+                place,
             );
         }
         for input in &program.inputs {
@@ -150,7 +112,7 @@ impl Effects {
                 SourceNode::Scalar(node) => self.add_scalar(node, who),
             }
         }
-        self.add_bsdf(&program.bsdf, who);
+        self.add_bsdf(&program.bsdf, place);
     }
 
     fn add_bsdf(&mut self, node: &BsdfNode, who: &str) {
@@ -174,10 +136,10 @@ impl Effects {
         self.add(effect, who);
     }
 
-    fn add_color(&mut self, node: &ColorNode, who: &str) {
+    fn add_color(&mut self, node: &ColorNode, who: &Caller<'_>) {
         match node {
             ColorNode::Const(_) | ColorNode::Param(_) => {}
-            ColorNode::VertexColor => self.add(Effect::VertexColors, who),
+            ColorNode::VertexColor => self.add(Effect::VertexColors, &who.place),
             ColorNode::Image(image) => self.add_image(image, who),
             ColorNode::Gray(node) => self.add_scalar(node, who),
             ColorNode::Product(a, b) => {
@@ -187,10 +149,10 @@ impl Effects {
         }
     }
 
-    fn add_scalar(&mut self, node: &ScalarNode, who: &str) {
+    fn add_scalar(&mut self, node: &ScalarNode, who: &Caller<'_>) {
         match node {
             ScalarNode::Const(_) | ScalarNode::Param(_) => {}
-            ScalarNode::VertexAlpha => self.add(Effect::VertexColors, who),
+            ScalarNode::VertexAlpha => self.add(Effect::VertexColors, &who.place),
             ScalarNode::Image(image) => self.add_image(image, who),
             ScalarNode::Product(a, b) => {
                 self.add_scalar(a, who);
@@ -199,8 +161,9 @@ impl Effects {
         }
     }
 
-    fn add_image(&mut self, image: &ImageNode, who: &str) {
-        self.add(Effect::Textures, who);
+    fn add_image(&mut self, image: &ImageNode, who: &Caller<'_>) {
+        let place = &who.place;
+        self.add(Effect::Textures, &who.image(image));
         for wrap in [image.wrap.0, image.wrap.1] {
             self.add(
                 match wrap {
@@ -208,7 +171,7 @@ impl Effects {
                     AnyWrap::Mirror => Effect::MirrorWrap,
                     AnyWrap::Clamp => Effect::ClampWrap,
                 },
-                who,
+                place,
             );
         }
         self.add(
@@ -216,7 +179,7 @@ impl Effects {
                 AnyFilter::Nearest => Effect::NearestFilter,
                 AnyFilter::Bilinear => Effect::BilinearFilter,
             },
-            who,
+            place,
         );
         self.add(
             match image.format {
@@ -224,25 +187,49 @@ impl Effects {
                 AnyFormat::LinearRgba8 => Effect::LinearTexels,
                 AnyFormat::LinearFloat => Effect::FloatTexels,
             },
-            who,
+            place,
         );
         if image.uv.transform.is_some() {
-            self.add(Effect::TextureTransforms, who);
+            self.add(Effect::TextureTransforms, place);
         }
         if image.uv.set == 1 {
-            self.add(Effect::SecondUvSet, who);
+            self.add(Effect::SecondUvSet, place);
+        }
+    }
+}
+
+/// A material, as a reason.
+struct Caller<'a> {
+    material: &'a MaterialUse,
+    place: String,
+}
+
+impl<'a> Caller<'a> {
+    fn new(material: &'a MaterialUse) -> Self {
+        Self {
+            material,
+            place: format!("material {:?}", material.name),
         }
     }
 
-    fn add_light(&mut self, light: &LightNode, who: &str) {
-        let effect = match light {
-            LightNode::Area { .. } => Effect::EmittingSurfaces,
-            LightNode::Point => Effect::PointLights,
-            LightNode::Spot => Effect::SpotLights,
-            LightNode::Directional => Effect::DirectionalLights,
-            LightNode::Environment => Effect::Environment,
-        };
-        self.add(effect, who);
+    /// One of its images.
+    fn image(&self, image: &ImageNode) -> String {
+        let name = self.material.images.get(&image.slot);
+        format!(
+            "{}, image {:?}",
+            self.place,
+            name.map_or("", String::as_str)
+        )
+    }
+}
+
+fn light_effect(light: &LightNode) -> Effect {
+    match light {
+        LightNode::Area { .. } => Effect::EmittingSurfaces,
+        LightNode::Point => Effect::PointLights,
+        LightNode::Spot => Effect::SpotLights,
+        LightNode::Directional => Effect::DirectionalLights,
+        LightNode::Environment => Effect::Environment,
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod build_script;
 pub mod desc;
 mod desc_validate;
+mod effect;
 pub mod effects;
 pub mod emit;
 mod fingerprint;

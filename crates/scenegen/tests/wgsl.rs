@@ -7,8 +7,8 @@ use residual_render::camera::AnyCamera;
 use residual_render::domain::tape::{Outputs, Record, Tape};
 use residual_render::domain::{Buffer, Domain};
 use residual_render::program::{
-    AlphaNode, BsdfNode, ColorNode, Culling, EmissionNode, ImageNode, InputNode, LightNode,
-    NormalNode, Program, ScalarNode, SourceNode, Structure,
+    AlphaNode, BsdfNode, ColorNode, EmissionNode, ImageNode, InputNode, LightNode, NormalNode,
+    Program, ScalarNode, SourceNode, Structure,
 };
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
@@ -146,7 +146,6 @@ fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Structure {
         lights,
         camera: AnyCamera::Perspective,
         sampler: AnySampler::Sobol,
-        culling: Culling::None,
     }
 }
 

@@ -6,8 +6,6 @@ mod interpreted;
 pub use boxed::{BoxedAlpha, BoxedMaterial};
 pub use interpreted::Interpreted;
 
-pub use residual_bvh::Culling;
-
 use crate::alpha::AlphaTest;
 use crate::camera::AnyCamera;
 use crate::sampler::AnySampler;
@@ -177,6 +175,4 @@ pub struct Structure {
     pub camera: AnyCamera,
     /// The sampler's kind.
     pub sampler: AnySampler,
-    /// Which sides of triangles are seen.
-    pub culling: Culling,
 }

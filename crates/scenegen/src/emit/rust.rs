@@ -8,7 +8,7 @@ use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 
 use crate::fingerprint::fingerprint;
-use crate::plan::Plan;
+use crate::plan::{MaterialUse, Plan};
 
 mod sources;
 use sources::{color, scalar, unit};
@@ -107,8 +107,8 @@ fn scene(out: &mut String, plan: &Plan) -> fmt::Result {
         structure.sampler
     )?;
     writeln!(out, "    #[inline(always)]")?;
-    for (light, count) in structure.lights.iter().zip(&plan.light_counts) {
-        writeln!(out, "    // {}: {count}", light_name(light))?;
+    for (light, of_kind) in structure.lights.iter().zip(&plan.lights) {
+        writeln!(out, "    // {}: {}", light_name(light), of_kind.count)?;
     }
     writeln!(
         out,
@@ -240,10 +240,15 @@ fn alpha_test(out: &mut String, number: usize, node: &AlphaNode) -> fmt::Result 
     writeln!(out, "            }}")
 }
 
-fn material(out: &mut String, number: usize, program: &Program, names: &[String]) -> fmt::Result {
+fn material(
+    out: &mut String,
+    number: usize,
+    program: &Program,
+    uses: &[MaterialUse],
+) -> fmt::Result {
     writeln!(out)?;
-    for name in names {
-        writeln!(out, "/// {name}")?;
+    for material in uses {
+        writeln!(out, "/// {:?}", material.name)?;
     }
     writeln!(out, "struct Program{number};\n")?;
     writeln!(out, "impl<D: Domain> Material<D> for Program{number} {{")?;

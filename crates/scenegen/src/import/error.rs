@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::desc::Warning;
+use crate::desc::{Dismissed, Warning};
+use crate::effect::Effect;
 
 /// Why a scene was not imported.
 #[derive(Debug, thiserror::Error)]
@@ -121,6 +122,7 @@ const MAX_WARNINGS: usize = 1000;
 pub(super) struct Warnings {
     list: Vec<Warning>,
     omitted: usize,
+    dismissed: Vec<Dismissed>,
 }
 
 impl Warnings {
@@ -139,7 +141,29 @@ impl Warnings {
         }
     }
 
-    /// All of them, in order.
+    /// Records that something changes nothing, each once.
+    pub(super) fn dismiss(
+        &mut self,
+        effect: Option<Effect>,
+        place: impl Into<String>,
+        reason: impl Into<String>,
+    ) {
+        let dismissed = Dismissed {
+            effect,
+            place: place.into(),
+            reason: reason.into(),
+        };
+        if self.dismissed.len() < MAX_WARNINGS && !self.dismissed.contains(&dismissed) {
+            self.dismissed.push(dismissed);
+        }
+    }
+
+    /// What was dismissed, in order.
+    pub(super) fn take_dismissed(&mut self) -> Vec<Dismissed> {
+        std::mem::take(&mut self.dismissed)
+    }
+
+    /// All warnings, in order.
     pub(super) fn into_vec(mut self) -> Vec<Warning> {
         if self.omitted > 0 {
             let message = format!("{} more warnings are left out", self.omitted);

@@ -134,6 +134,9 @@ pub(super) fn warn_about_material(
                 _ => format!("{extension} is not supported; rendered without it"),
             };
             warnings.push(place, message);
+        } else {
+            let reason = format!("{extension} is there, and its factor is 0");
+            warnings.dismiss(None, place, reason);
         }
     }
 }

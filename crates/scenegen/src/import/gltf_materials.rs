@@ -16,6 +16,7 @@ use crate::desc::{
     AlphaMode, ColorInput, MaterialDesc, MetallicRoughness, NormalMap, ScalarInput, SurfaceDesc,
     TextureUse,
 };
+use crate::effect::Effect;
 
 /// Materials in use, in order of first use.
 pub(super) struct Materials<'a> {
@@ -36,6 +37,17 @@ impl<'a> Materials<'a> {
             list: Vec::new(),
             ids: BTreeMap::new(),
         }
+    }
+
+    /// Says which materials and images of the file are not in use.
+    pub(super) fn dismiss_unused(&self, warnings: &mut Warnings) {
+        for (index, material) in self.document.root.materials.iter().enumerate() {
+            if !self.ids.contains_key(&Some(index)) {
+                let at = place("materials", index, material.name.as_deref());
+                warnings.dismiss(None, at, "no mesh of the scene uses it");
+            }
+        }
+        self.textures.dismiss_unused(warnings);
     }
 
     /// The index of a material in the scene; `None` is glTF's default material.
@@ -120,6 +132,11 @@ impl Reader<'_, '_> {
             0.0..=f32::MAX,
             0.0,
         );
+        if strength == 0.0 && emissive != [0.0; 3] {
+            let effect = Some(Effect::EmittingSurfaces);
+            self.warnings
+                .dismiss(effect, &*self.at, "emissiveStrength is 0");
+        }
         let emissive = emissive.map(|factor| (factor * strength).min(f32::MAX));
         let emission = ColorInput {
             factor: emissive,

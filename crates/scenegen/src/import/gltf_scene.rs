@@ -51,6 +51,7 @@ fn read(document: &Document, warnings: &mut Warnings) -> Result<SceneDesc, Fault
                 .extend(gltf_lights::camera(document, camera, &placed, warnings)?);
         }
     }
+    reader.dismiss_unused(warnings);
     scene.meshes = reader.meshes;
     (scene.textures, scene.images) = reader.materials.textures.finish(warnings);
     scene.materials = reader.materials.list;
@@ -67,6 +68,18 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    /// Says what of the file is not in the scene.
+    fn dismiss_unused(&self, warnings: &mut Warnings) {
+        for (index, ids) in self.mesh_ids.iter().enumerate() {
+            if ids.is_none() {
+                let mesh = &self.document.root.meshes[index];
+                let at = place("meshes", index, mesh.name.as_deref());
+                warnings.dismiss(None, at, "no node of the scene shows it");
+            }
+        }
+        self.materials.dismiss_unused(warnings);
+    }
+
     fn instances(
         &mut self,
         mesh: Index<Mesh>,

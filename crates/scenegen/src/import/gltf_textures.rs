@@ -84,6 +84,16 @@ impl<'a> Textures<'a> {
         }
     }
 
+    /// Says which images of the file are not in use.
+    pub(super) fn dismiss_unused(&self, warnings: &mut Warnings) {
+        for (index, image) in self.document.root.images.iter().enumerate() {
+            if !self.image_ids.contains_key(&index) {
+                let at = place("images", index, image.name.as_deref());
+                warnings.dismiss(None, at, "no material in use reads it");
+            }
+        }
+    }
+
     /// Registers a use of a texture; `None` where it cannot be read, after a warning.
     pub(super) fn add<'b>(
         &mut self,

@@ -76,6 +76,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
     if scene.instances.is_empty() {
         warnings.push("scene", "has nothing to render");
     }
+    scene.dismissed = warnings.take_dismissed();
     scene.warnings = warnings.into_vec();
     if let Err(violation) = scene.validate() {
         // Values the checks above did not foresee; better refused here than rendered as NaN.

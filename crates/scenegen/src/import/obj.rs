@@ -136,6 +136,7 @@ fn build(
             warnings,
         ));
     }
+    materials.dismiss_unused(warnings);
     (scene.materials, scene.textures, scene.images) = materials.finish(warnings);
     Ok(scene)
 }

@@ -67,6 +67,16 @@ impl<'a> ObjMaterials<'a> {
         self.list.len() - 1
     }
 
+    /// Says which materials of the libraries are not in use.
+    pub(super) fn dismiss_unused(&self, warnings: &mut Warnings) {
+        for (index, material) in self.library.iter().enumerate() {
+            if !self.ids.contains_key(&Some(index)) {
+                let place = format!("{} \"{}\"", material.place, material.name.escape_debug());
+                warnings.dismiss(None, place, "no face uses it");
+            }
+        }
+    }
+
     /// Decodes the images.
     pub(super) fn finish(
         self,

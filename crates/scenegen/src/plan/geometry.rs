@@ -2,50 +2,43 @@
 
 use glam::{Mat3, Vec3, Vec4};
 use residual_render::domain::Buffer;
-use residual_render::program::Culling;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, TRIANGLE_WORDS};
 
 use super::camera::Bounds;
-use super::{Materials, PlanError, PlannedMaterial, culling};
+use super::{Materials, PlanError, PlannedMaterial};
 use crate::desc::{InstanceDesc, MeshDesc, SceneDesc, Warning};
 
 /// What packing found out.
 #[derive(Debug)]
 pub(super) struct Geometry {
     pub(super) bounds: Bounds,
-    pub(super) culling: Culling,
     /// Triangle ranges of instances with their materials, in order.
     pub(super) ranges: Vec<(std::ops::Range<u32>, usize)>,
 }
 
-/// Attributes that any program reads: the buffers to be filled, for all vertices.
-fn wanted(materials: &Materials) -> Attributes {
-    let mut all = Attributes::default();
-    for program in &materials.programs {
-        all = all.union(program.attributes);
-        if let Some(alpha) = &program.alpha {
-            all = all.union(alpha.attributes);
-        }
-    }
-    all
+/// An instance that is seen, with what its material reads.
+struct Visible<'a> {
+    instance: &'a InstanceDesc,
+    mesh: &'a MeshDesc,
+    planned: &'a PlannedMaterial,
+    reads: Attributes,
+    /// Number of its first vertex; of no use where nothing is read.
+    first_vertex: u32,
 }
 
-/// Packs all instances.
-pub(super) fn pack(
-    scene: &SceneDesc,
-    materials: &Materials,
-    data: &mut SceneData,
+/// The instances that are seen.
+fn visible<'a>(
+    scene: &'a SceneDesc,
+    materials: &'a Materials,
     warnings: &mut Vec<Warning>,
-) -> Result<Geometry, PlanError> {
-    let wanted = wanted(materials);
-    let mut bounds = Bounds::EMPTY;
-    let mut ranges = Vec::new();
-    let mut vertices = 0_u64;
+) -> Result<Vec<Visible<'a>>, PlanError> {
+    let mut visible = Vec::new();
     let mut triangles = 0_u64;
     for instance in &scene.instances {
         let mesh = &scene.meshes[instance.mesh];
-        if materials.of(mesh.material).invisible {
+        let planned = materials.of(mesh.material);
+        if planned.invisible {
             warnings.push(Warning {
                 place: format!("node {:?}", instance.name),
                 message: format!(
@@ -55,100 +48,173 @@ pub(super) fn pack(
             });
             continue;
         }
-        if (vertices + mesh.positions.len() as u64) * 4 > u64::from(u32::MAX) {
-            return Err(PlanError::TooLarge { what: "vertices" });
-        }
-        let words = u64::from(TRIANGLE_WORDS);
-        if (triangles + mesh.triangles.len() as u64) * words > u64::from(u32::MAX) {
+        triangles += mesh.triangles.len() as u64;
+        if triangles * u64::from(TRIANGLE_WORDS) > u64::from(u32::MAX) {
             return Err(PlanError::TooLarge { what: "triangles" });
         }
-        let positions = mesh.positions.iter();
-        let positions: Vec<Vec3> = positions
-            .map(|&p| instance.transform.transform_point3(p))
-            .collect();
-        positions.iter().for_each(|&p| bounds.add(p));
-        pack_triangles(
-            mesh,
+        let program = &materials.programs[planned.program as usize];
+        let alpha = program.alpha.as_ref();
+        let reads = program
+            .attributes
+            .union(alpha.map_or(Attributes::NONE, |alpha| alpha.attributes));
+        visible.push(Visible {
             instance,
-            &positions,
-            materials.of(mesh.material),
-            data,
-        );
-        if wanted != Attributes::NONE {
-            pack_indices(mesh, instance, vertices as u32, data);
-            pack_attributes(mesh, instance, wanted, data);
-        }
-        let start = triangles as u32;
-        vertices += mesh.positions.len() as u64;
-        triangles += mesh.triangles.len() as u64;
-        ranges.push((start..triangles as u32, mesh.material));
+            mesh,
+            planned,
+            reads,
+            first_vertex: 0,
+        });
     }
-    let culled = data.single_sided.iter().filter(|&&single| single).count();
-    let culling = culling(culled, data.single_sided.len());
-    Ok(Geometry {
-        bounds,
-        culling,
-        ranges,
-    })
+    Ok(visible)
 }
 
-fn extend(data: &mut SceneData, buffer: Buffer, values: impl IntoIterator<Item = f32>) {
-    data.buffer_mut(buffer)
-        .extend(values.into_iter().map(f32::to_bits));
+/// An attribute as a buffer: who reads it, and its rows.
+struct Attribute {
+    buffer: Buffer,
+    is_read: fn(Attributes) -> bool,
+    pack: fn(&Visible<'_>, &mut Vec<u32>),
 }
 
-fn pack_attributes(
-    mesh: &MeshDesc,
-    instance: &InstanceDesc,
-    wanted: Attributes,
+/// From the one that the fewest materials read, as a rule, to the one that the most do.
+const ATTRIBUTES: [Attribute; 4] = [
+    Attribute {
+        buffer: Buffer::Tangents,
+        is_read: |reads| reads.tangents,
+        pack: pack_tangents,
+    },
+    Attribute {
+        buffer: Buffer::Colors,
+        is_read: |reads| reads.colors,
+        pack: pack_colors,
+    },
+    Attribute {
+        buffer: Buffer::Uvs,
+        is_read: |reads| reads.uv0 || reads.uv1,
+        pack: pack_uvs,
+    },
+    Attribute {
+        buffer: Buffer::Normals,
+        is_read: |reads| reads.normals,
+        pack: pack_normals,
+    },
+];
+
+/// Packs all instances.
+pub(super) fn pack(
+    scene: &SceneDesc,
+    materials: &Materials,
     data: &mut SceneData,
-) {
-    let linear = Mat3::from(instance.transform.matrix3);
+    warnings: &mut Vec<Warning>,
+) -> Result<Geometry, PlanError> {
+    let mut visible = visible(scene, materials, warnings)?;
+    pack_vertices(&mut visible, data)?;
+    let has_vertices = visible.iter().any(|seen| seen.reads != Attributes::NONE);
+    let mut bounds = Bounds::EMPTY;
+    let mut ranges = Vec::new();
+    for seen in &visible {
+        let start = data.triangle_count() as u32;
+        let transform = &seen.instance.transform;
+        let positions = seen.mesh.positions.iter();
+        let positions: Vec<Vec3> = positions.map(|&p| transform.transform_point3(p)).collect();
+        positions.iter().for_each(|&p| bounds.add(p));
+        pack_triangles(seen, &positions, data);
+        if has_vertices {
+            pack_indices(seen, data);
+        }
+        ranges.push((start..data.triangle_count() as u32, seen.mesh.material));
+    }
+    Ok(Geometry { bounds, ranges })
+}
+
+/// Numbers the vertices and writes the buffers of attributes. Vertices whose material reads nothing are none; those
+/// that read the rarest attributes come first, so that each buffer ends with the last vertex that reads it.
+fn pack_vertices(visible: &mut [Visible<'_>], data: &mut SceneData) -> Result<(), PlanError> {
+    let mut order: Vec<usize> = (0..visible.len())
+        .filter(|&k| visible[k].reads != Attributes::NONE)
+        .collect();
+    order.sort_by_key(|&k| {
+        ATTRIBUTES
+            .each_ref()
+            .map(|attribute| !(attribute.is_read)(visible[k].reads))
+    });
+    let mut vertices = 0_u64;
+    for &k in &order {
+        visible[k].first_vertex = vertices as u32;
+        vertices += visible[k].mesh.positions.len() as u64;
+        if vertices * 4 > u64::from(u32::MAX) {
+            return Err(PlanError::TooLarge { what: "vertices" });
+        }
+    }
+    for attribute in &ATTRIBUTES {
+        let reads = |&k: &usize| (attribute.is_read)(visible[k].reads);
+        let readers = order.iter().rposition(reads).map_or(0, |last| last + 1);
+        let buffer = data.buffer_mut(attribute.buffer);
+        for k in &order[..readers] {
+            let seen = &visible[*k];
+            if reads(k) {
+                (attribute.pack)(seen, buffer);
+            } else {
+                buffer.resize(buffer.len() + 4 * seen.mesh.positions.len(), 0);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn extend(buffer: &mut Vec<u32>, values: impl IntoIterator<Item = f32>) {
+    buffer.extend(values.into_iter().map(f32::to_bits));
+}
+
+fn linear(seen: &Visible<'_>) -> Mat3 {
+    Mat3::from(seen.instance.transform.matrix3)
+}
+
+/// −1 for instances that are mirrored.
+fn side(linear: Mat3) -> f32 {
+    if linear.determinant() < 0.0 {
+        -1.0
+    } else {
+        1.0
+    }
+}
+
+fn pack_normals(seen: &Visible<'_>, buffer: &mut Vec<u32>) {
+    let linear = linear(seen);
     // Normals go by the cofactor matrix, which exists for singular transforms too; its sign mirrors with them.
     let cofactors = Mat3::from_cols(
         linear.y_axis.cross(linear.z_axis),
         linear.z_axis.cross(linear.x_axis),
         linear.x_axis.cross(linear.y_axis),
     );
-    let side = if linear.determinant() < 0.0 {
-        -1.0
-    } else {
-        1.0
+    for &n in &seen.mesh.normals {
+        let n = (cofactors * n * side(linear)).normalize_or(n);
+        extend(buffer, n.extend(0.0).to_array());
+    }
+}
+
+fn pack_tangents(seen: &Visible<'_>, buffer: &mut Vec<u32>) {
+    let linear = linear(seen);
+    // (0, 0, 0) leaves the frame to the normal.
+    let none = vec![Vec4::new(0.0, 0.0, 0.0, 1.0); seen.mesh.positions.len()];
+    for &t in seen.mesh.tangents.as_ref().unwrap_or(&none) {
+        let turned = (linear * t.truncate()).normalize_or_zero();
+        extend(buffer, turned.extend(t.w * side(linear)).to_array());
+    }
+}
+
+fn pack_uvs(seen: &Visible<'_>, buffer: &mut Vec<u32>) {
+    let uv = |set: usize, vertex: usize| match &seen.mesh.uvs[set] {
+        Some(uvs) => uvs[vertex].to_array(),
+        None => [0.0; 2],
     };
-    let count = mesh.positions.len();
-    if wanted.normals {
-        for &n in &mesh.normals {
-            let n = (cofactors * n * side).normalize_or(n);
-            extend(data, Buffer::Normals, n.extend(0.0).to_array());
-        }
-    }
-    if wanted.tangents {
-        // (0, 0, 0) leaves the frame to the normal.
-        let none = vec![Vec4::new(0.0, 0.0, 0.0, 1.0); count];
-        for &t in mesh.tangents.as_ref().unwrap_or(&none) {
-            let turned = (linear * t.truncate()).normalize_or_zero();
-            extend(data, Buffer::Tangents, turned.extend(t.w * side).to_array());
-        }
-    }
-    if wanted.uv0 || wanted.uv1 {
-        let uv = |set: usize, vertex: usize| match &mesh.uvs[set] {
-            Some(uvs) => uvs[vertex].to_array(),
-            None => [0.0; 2],
-        };
-        let row = |vertex| uv(0, vertex).into_iter().chain(uv(1, vertex));
-        extend(data, Buffer::Uvs, (0..count).flat_map(row));
-    }
-    if wanted.colors {
-        match &mesh.colors {
-            Some(colors) => {
-                extend(
-                    data,
-                    Buffer::Colors,
-                    colors.iter().flat_map(|c| c.to_array()),
-                );
-            }
-            None => extend(data, Buffer::Colors, vec![1.0; count * 4]),
-        }
+    let row = |vertex| uv(0, vertex).into_iter().chain(uv(1, vertex));
+    extend(buffer, (0..seen.mesh.positions.len()).flat_map(row));
+}
+
+fn pack_colors(seen: &Visible<'_>, buffer: &mut Vec<u32>) {
+    match &seen.mesh.colors {
+        Some(colors) => extend(buffer, colors.iter().flat_map(|c| c.to_array())),
+        None => extend(buffer, vec![1.0; seen.mesh.positions.len() * 4]),
     }
 }
 
@@ -159,25 +225,22 @@ fn turned(mesh: &MeshDesc, instance: &InstanceDesc) -> impl Iterator<Item = [u32
     mesh.triangles.iter().map(turn)
 }
 
-fn pack_triangles(
-    mesh: &MeshDesc,
-    instance: &InstanceDesc,
-    positions: &[Vec3],
-    planned: &PlannedMaterial,
-    data: &mut SceneData,
-) {
-    for triangle in turned(mesh, instance) {
+fn pack_triangles(seen: &Visible<'_>, positions: &[Vec3], data: &mut SceneData) {
+    let planned = seen.planned;
+    for triangle in turned(seen.mesh, seen.instance) {
         let corners = triangle.map(|corner| positions[corner as usize].to_array());
         data.push_triangle(corners, planned.program, planned.params);
     }
-    data.single_sided
-        .resize(data.triangle_count(), planned.culled);
+    let count = data.triangle_count();
+    data.single_sided.resize(count, planned.culled);
+    data.lets_through.resize(count, planned.lets_through);
 }
 
-fn pack_indices(mesh: &MeshDesc, instance: &InstanceDesc, first_vertex: u32, data: &mut SceneData) {
+/// The vertices of each triangle; those of a material that reads none are never asked for.
+fn pack_indices(seen: &Visible<'_>, data: &mut SceneData) {
     let indices = data.buffer_mut(Buffer::Indices);
-    for triangle in turned(mesh, instance) {
-        let [a, b, c] = triangle.map(|corner| first_vertex + corner);
+    for triangle in turned(seen.mesh, seen.instance) {
+        let [a, b, c] = triangle.map(|corner| seen.first_vertex + corner);
         indices.extend([a, b, c, 0]);
     }
 }

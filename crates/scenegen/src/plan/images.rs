@@ -1,7 +1,10 @@
 //! Texels: every image that a program or an environment reads, once.
 
+use std::collections::BTreeMap;
+
 use residual_render::domain::Buffer;
 use residual_render::scene_data::SceneData;
+use residual_render::texture::{AnyFormat, srgb_table};
 
 use super::PlanError;
 use crate::desc::{ImageDesc, SceneDesc, Texels};
@@ -12,6 +15,35 @@ pub(super) struct Images {
     /// Number of the image, first word.
     places: Vec<(usize, u32)>,
     words: u64,
+    /// By the image's number, once asked for.
+    extremes: BTreeMap<usize, Extremes>,
+}
+
+/// Least and greatest value of each channel of an image, as stored.
+#[derive(Debug, Clone, Copy)]
+enum Extremes {
+    Bytes([[u8; 2]; 4]),
+    Floats([[f32; 2]; 4]),
+}
+
+impl Extremes {
+    fn of(texels: &Texels) -> Self {
+        /// Least and greatest of each channel. There is at least one texel.
+        fn fold<T: Copy + PartialOrd>(texels: &[[T; 4]]) -> [[T; 2]; 4] {
+            let mut extremes = texels[0].map(|c| [c, c]);
+            for texel in texels {
+                for ([least, greatest], &c) in extremes.iter_mut().zip(texel) {
+                    *least = if c < *least { c } else { *least };
+                    *greatest = if c > *greatest { c } else { *greatest };
+                }
+            }
+            extremes
+        }
+        match texels {
+            Texels::Rgba8(texels) => Self::Bytes(fold(texels)),
+            Texels::RgbaF32(texels) => Self::Floats(fold(texels)),
+        }
+    }
 }
 
 fn words(image: &ImageDesc) -> u64 {
@@ -34,6 +66,26 @@ impl Images {
             first
         });
         [first, desc.width, desc.height]
+    }
+
+    /// Least and greatest value that a channel has when it is read, bytes as `format` says.
+    pub(super) fn extremes(
+        &mut self,
+        scene: &SceneDesc,
+        image: usize,
+        channel: usize,
+        format: AnyFormat,
+    ) -> [f32; 2] {
+        let texels = &scene.images[image].texels;
+        let extremes = self.extremes.entry(image);
+        let is_encoded = format == AnyFormat::SrgbRgba8 && channel < 3;
+        match *extremes.or_insert_with(|| Extremes::of(texels)) {
+            Extremes::Bytes(extremes) if is_encoded => {
+                extremes[channel].map(|code| srgb_table()[usize::from(code)])
+            }
+            Extremes::Bytes(extremes) => extremes[channel].map(|byte| f32::from(byte) / 255.0),
+            Extremes::Floats(extremes) => extremes[channel],
+        }
     }
 
     /// Writes the texels.

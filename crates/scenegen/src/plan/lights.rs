@@ -9,10 +9,10 @@ use residual_render::program::{ColorNode, LightNode, SourceNode};
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
 
-use super::Materials;
 use super::alias;
 use super::geometry::Geometry;
 use super::images::Images;
+use super::{LightKindUse, Materials};
 use crate::desc::{
     ColorInput, EnvironmentDesc, ImageDesc, LightDesc, LightKind, SceneDesc, Texels,
 };
@@ -21,7 +21,7 @@ use crate::desc::{
 #[derive(Debug, Default)]
 pub(super) struct PlannedLights {
     pub(super) kinds: Vec<LightNode>,
-    pub(super) counts: Vec<usize>,
+    pub(super) uses: Vec<LightKindUse>,
     records: Vec<[u32; RECORD as usize]>,
     /// Power of each light, and the number of its kind.
     powers: Vec<(f64, usize)>,
@@ -88,18 +88,22 @@ impl PlannedLights {
         let found = self.kinds.iter().position(|kind| *kind == node);
         found.unwrap_or_else(|| {
             self.kinds.push(node);
-            self.counts.push(0);
+            self.uses.push(LightKindUse::default());
             self.kinds.len() - 1
         })
     }
 
-    fn push(&mut self, kind: usize, power: f64, words: &[u32]) {
+    fn push(&mut self, kind: usize, source: &str, power: f64, words: &[u32]) {
         let mut record = [0; RECORD as usize];
         record[0] = kind as u32;
         record[1..=words.len()].copy_from_slice(words);
         self.records.push(record);
         self.powers.push((power, kind));
-        self.counts[kind] += 1;
+        let of_kind = &mut self.uses[kind];
+        of_kind.count += 1;
+        if !of_kind.sources.iter().any(|other| other == source) {
+            of_kind.sources.push(source.to_owned());
+        }
     }
 
     fn add_emitting_triangles(
@@ -125,7 +129,8 @@ impl PlannedLights {
             };
             let radiance = mean_emission(scene, &scene.materials[*material].emission);
             let sides = if emission.double_sided { 2.0 } else { 1.0 };
-            let kind = self.kind(node);
+            let source = format!("material {:?}", scene.materials[*material].name);
+            let mut kind = None;
             for prim in range.clone() {
                 let corners = [0, 1, 2].map(|corner| {
                     glam::DVec3::from_array(positions[3 * prim as usize + corner].map(f64::from))
@@ -138,7 +143,9 @@ impl PlannedLights {
                 if power > 0.0 && power.is_finite() {
                     let number = self.records.len() as u32;
                     data.set_light(prim as usize, number);
-                    self.push(kind, power, &[prim, u32::from(emission.double_sided)]);
+                    let kind = *kind.get_or_insert_with(|| self.kind(node.clone()));
+                    let record = [prim, u32::from(emission.double_sided)];
+                    self.push(kind, &source, power, &record);
                 }
             }
         }
@@ -152,12 +159,14 @@ impl PlannedLights {
         let words = |vectors: &[[f32; 3]]| -> Vec<u32> {
             vectors.iter().flatten().map(|c| c.to_bits()).collect()
         };
+        let source = format!("light {:?}", light.name);
         let sphere = 4.0 * std::f64::consts::PI;
         match light.kind {
             LightKind::Point { position } => {
                 let kind = self.kind(LightNode::Point);
                 self.push(
                     kind,
+                    &source,
                     sphere * strength,
                     &words(&[position.to_array(), light.intensity]),
                 );
@@ -176,13 +185,14 @@ impl PlannedLights {
                 record.extend(words(&[direction.to_array()]));
                 record.push((-outer.cos() * scale).to_bits());
                 let cone = 0.5 * sphere * (1.0 - f64::from(outer.cos()));
-                self.push(kind, cone * strength, &record);
+                self.push(kind, &source, cone * strength, &record);
             }
             LightKind::Directional { direction } => {
                 let kind = self.kind(LightNode::Directional);
                 let power = std::f64::consts::PI * radius * radius * strength;
                 self.push(
                     kind,
+                    &source,
                     power,
                     &words(&[(-direction).to_array(), light.intensity]),
                 );
@@ -211,6 +221,7 @@ impl PlannedLights {
             2.0 * std::f64::consts::PI.powi(2) * mean * f64::from(environment.strength);
         self.push(
             kind,
+            &format!("environment {:?}", image.name),
             std::f64::consts::PI * radius * radius * irradiance,
             &[],
         );

@@ -14,10 +14,11 @@ use super::closed::is_closed;
 use super::geometry::is_smooth;
 use super::images::Images;
 use super::sources::Sources;
-use super::{CullingRule, Materials, PlanOptions, PlannedMaterial};
+use super::{CullingRule, MaterialUse, Materials, PlanOptions, PlannedMaterial};
 use crate::desc::{
     AlphaMode, MaterialDesc, MetallicRoughness, Phong, SceneDesc, SurfaceDesc, Warning,
 };
+use crate::effect::Effect;
 
 /// Plans the materials of all instanced meshes.
 pub(super) fn plan_materials(
@@ -34,7 +35,8 @@ pub(super) fn plan_materials(
     for (number, available) in available_attributes(scene).into_iter().enumerate() {
         let Some(available) = available else { continue };
         let desc = &scene.materials[number];
-        let sources = Sources::new(scene, options.binding, available, images);
+        let place = format!("material {:?}", desc.name);
+        let sources = Sources::new(scene, options.binding, available, images, place);
         let encloses = encloses_a_body(scene, number);
         let mut builder = Builder {
             sources,
@@ -44,24 +46,32 @@ pub(super) fn plan_materials(
             encloses,
         };
         let (program, invisible) = builder.program(desc, available);
-        let params = builder.sources.into_params();
+        let collected = builder.sources.collected();
         let transmits = bsdf_transmits(&program.bsdf);
+        let culled = options.culling == CullingRule::Gltf && !desc.double_sided && !transmits;
+        let lets_through = program.alpha.is_some();
         // Programs are the same if they print the same: floats print exactly, so this neither merges nor splits
         // what must not be.
         let key = format!("{program:?}");
         let index = *numbers.entry(key).or_insert_with(|| {
             materials.programs.push(program);
-            materials.names.push(Vec::new());
+            materials.uses.push(Vec::new());
             materials.programs.len() as u32 - 1
         });
-        materials.names[index as usize].push(format!("materials/{number} {:?}", desc.name));
+        materials.uses[index as usize].push(MaterialUse {
+            name: desc.name.clone(),
+            images: collected.images,
+            culled,
+        });
         materials.planned[number] = Some(PlannedMaterial {
             program: index,
             params: materials.params.len() as u32,
-            culled: options.culling == CullingRule::Gltf && !desc.double_sided && !transmits,
+            culled,
+            lets_through,
             invisible,
         });
-        materials.params.extend(params);
+        materials.params.extend(collected.params);
+        materials.dismissed.extend(collected.dismissed);
     }
     materials
 }
@@ -134,6 +144,14 @@ impl Builder<'_> {
             .normal_map
             .as_ref()
             .filter(|_| available.tangents)
+            .filter(|map| {
+                let flat = map.scale == 0.0 || self.sources.is_flat(&map.texture);
+                if flat {
+                    self.sources
+                        .dismiss(Effect::NormalMaps, "its normal map bends no normal");
+                }
+                !flat
+            })
             .map(|map| {
                 let texel = self.sources.linear_texel(&map.texture);
                 let scale = self.sources.number(map.scale);
@@ -151,6 +169,10 @@ impl Builder<'_> {
             }
         };
         let emission = self.sources.color(&desc.emission, false);
+        if is_black(&emission) && desc.emission.factor != [0.0; 3] {
+            self.sources
+                .dismiss(Effect::EmittingSurfaces, "its emissive texture is black");
+        }
         let emission = (!is_black(&emission)).then(|| EmissionNode {
             radiance: self.color("emission", emission),
             double_sided: desc.double_sided,
@@ -212,35 +234,42 @@ impl Builder<'_> {
     /// glTF 2.0, appendix B.3.5: `mix(dielectric, metal, metallic)`.
     fn metallic_roughness(&mut self, surface: &MetallicRoughness) -> BsdfNode {
         let base = self.sources.color(&surface.base_color, true);
-        let roughness = self.sources.scalar(&surface.roughness);
         let metallic = self.sources.scalar(&surface.metallic);
         if metallic == ScalarNode::Const(0.0) {
-            return self.dielectric_part(surface, base, roughness);
+            return self.dielectric_part(surface, base);
         }
+        let roughness = self.sources.scalar(&surface.roughness);
         let metal = BsdfNode::Conductor {
             color: self.color("albedo", base.clone()),
-            roughness: self.scalar("roughness", roughness.clone()),
+            roughness: self.scalar("roughness", roughness),
         };
         if metallic == ScalarNode::Const(1.0) {
             return metal;
         }
         BsdfNode::Mix {
-            a: Box::new(self.dielectric_part(surface, base, roughness)),
+            a: Box::new(self.dielectric_part(surface, base)),
             b: Box::new(metal),
             weight: self.scalar("metallic", metallic),
         }
     }
 
     /// `mix(opaque, transmitting, transmission)` under the same coat.
-    fn dielectric_part(
-        &mut self,
-        surface: &MetallicRoughness,
-        base: ColorNode,
-        roughness: ScalarNode,
-    ) -> BsdfNode {
+    fn dielectric_part(&mut self, surface: &MetallicRoughness, base: ColorNode) -> BsdfNode {
+        let solid = surface.solid || self.encloses;
         let transmission = self.sources.scalar(&surface.transmission);
+        if surface.transmission.factor > 0.0
+            && let Some(reason) = opaque(&transmission, &base)
+        {
+            let effect = if solid {
+                Effect::Refraction
+            } else {
+                Effect::ThinTransmission
+            };
+            self.sources.dismiss(effect, reason);
+            return self.opaque_dielectric(surface, base);
+        }
         if transmission == ScalarNode::Const(0.0) {
-            return self.opaque_dielectric(surface, base, roughness);
+            return self.opaque_dielectric(surface, base);
         }
         if surface.roughness.factor > 0.0 {
             self.warnings.push(Warning {
@@ -249,24 +278,19 @@ impl Builder<'_> {
                     .to_owned(),
             });
         }
-        let clear = self.dielectric(base.clone(), surface.ior, surface.solid || self.encloses);
+        let clear = self.dielectric(base.clone(), surface.ior, solid);
         if transmission == ScalarNode::Const(1.0) {
             return clear;
         }
         BsdfNode::Mix {
-            a: Box::new(self.opaque_dielectric(surface, base, roughness)),
+            a: Box::new(self.opaque_dielectric(surface, base)),
             b: Box::new(clear),
             weight: self.scalar("transmission", transmission),
         }
     }
 
     /// A diffuse base under a coat, or without one where the coat reflects nothing.
-    fn opaque_dielectric(
-        &mut self,
-        surface: &MetallicRoughness,
-        albedo: ColorNode,
-        roughness: ScalarNode,
-    ) -> BsdfNode {
+    fn opaque_dielectric(&mut self, surface: &MetallicRoughness, albedo: ColorNode) -> BsdfNode {
         // KHR_materials_specular and KHR_materials_ior: F0 = min(((η−1)/(η+1))²·colour, 1)·strength, F90 = strength.
         let grazing = self.sources.scalar(&surface.specular);
         let normal_incidence = ((surface.ior - 1.0) / (surface.ior + 1.0)).powi(2);
@@ -285,6 +309,7 @@ impl Builder<'_> {
             }
             None => reflectance,
         };
+        let roughness = self.sources.scalar(&surface.roughness);
         BsdfNode::Glossy {
             albedo: self.color("albedo", albedo),
             roughness: self.scalar("roughness", roughness),
@@ -326,12 +351,26 @@ impl Builder<'_> {
             AlphaMode::Mask(cutoff) => AlphaTest::Mask(cutoff),
             AlphaMode::Blend => AlphaTest::Blend,
         };
-        if let Some(alpha) = self.sources.known_alpha(&desc.alpha) {
-            match test {
-                AlphaTest::Mask(cutoff) => return (None, alpha < cutoff),
-                AlphaTest::Blend if alpha >= 1.0 => return (None, false),
-                AlphaTest::Blend if alpha <= 0.0 => return (None, true),
-                AlphaTest::Blend => {}
+        // Filtering stays between the extremes of the texels, but for rounding.
+        const ROUNDING: f32 = 1e-5;
+        if let Some([least, greatest]) = self.sources.alpha_extremes(&desc.alpha) {
+            let (effect, always, never) = match test {
+                AlphaTest::Mask(cutoff) if least == greatest => {
+                    (Effect::AlphaMasks, least >= cutoff, least < cutoff)
+                }
+                AlphaTest::Mask(cutoff) => (
+                    Effect::AlphaMasks,
+                    least >= cutoff + ROUNDING,
+                    greatest < cutoff - ROUNDING,
+                ),
+                AlphaTest::Blend => (Effect::AlphaBlending, least >= 1.0, greatest <= 0.0),
+            };
+            if always {
+                self.sources
+                    .dismiss(effect, "its alpha lets nothing through");
+            }
+            if always || never {
+                return (None, never);
             }
         }
         let alpha = self.sources.alpha(&desc.alpha);
@@ -348,6 +387,17 @@ impl Builder<'_> {
             }),
             false,
         )
+    }
+}
+
+/// Why nothing is seen through a dielectric, if nothing is.
+fn opaque(transmission: &ScalarNode, tint: &ColorNode) -> Option<&'static str> {
+    if *transmission == ScalarNode::Const(0.0) {
+        Some("its transmission texture is black everywhere")
+    } else if is_black(tint) {
+        Some("what it transmits is tinted black")
+    } else {
+        None
     }
 }
 

@@ -7,21 +7,25 @@
 mod alias;
 mod camera;
 mod closed;
+mod explain;
 mod geometry;
 mod images;
 mod lights;
 mod materials;
 mod sources;
 
+use std::collections::BTreeMap;
+
 use residual_render::domain::Buffer;
-use residual_render::program::{Culling, Program, Structure};
+use residual_render::program::{Program, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
 
 pub use camera::{CameraChoice, View};
+pub use explain::{BindingTimes, Decision};
 
-use crate::desc::{EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning};
+use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning};
 
 /// When an input's value is known to the compiler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -76,18 +80,42 @@ impl Default for PlanOptions {
 pub struct Plan {
     /// The scene's name.
     pub name: String,
+    /// When inputs are known.
+    pub binding: Binding,
     /// The static half.
     pub structure: Structure,
     /// The dynamic half.
     pub data: SceneData,
     /// For each program, the materials that use it.
-    pub materials: Vec<Vec<String>>,
-    /// For each kind of light, how many lights there are.
-    pub light_counts: Vec<usize>,
+    pub materials: Vec<Vec<MaterialUse>>,
+    /// For each kind of light, the lights of that kind.
+    pub lights: Vec<LightKindUse>,
     /// The camera that was chosen.
     pub camera_name: String,
     /// What was changed or left out.
     pub warnings: Vec<Warning>,
+    /// What the scene has and the image does not need.
+    pub dismissed: Vec<Dismissed>,
+}
+
+/// A material that uses a program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MaterialUse {
+    /// Its name.
+    pub name: String,
+    /// Names of the images that it reads, by their slots among its parameters.
+    pub images: BTreeMap<u32, String>,
+    /// Its surfaces are not seen from behind.
+    pub culled: bool,
+}
+
+/// The lights of a kind.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LightKindUse {
+    /// How many there are.
+    pub count: usize,
+    /// Where they come from, such as `light "Sun"`, each once.
+    pub sources: Vec<String>,
 }
 
 /// What planning a scene can fail at.
@@ -116,7 +144,14 @@ pub enum PlanError {
 /// # Errors
 /// If the camera asked for does not exist, or the scene does not fit 32-bit indices.
 pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError> {
-    if !scene.has_light() {
+    let mut warnings = Vec::new();
+    let mut data = SceneData::default();
+    let mut images = images::Images::default();
+
+    let materials = materials::plan_materials(scene, options, &mut images, &mut warnings);
+    let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
+    let lights = lights::plan_lights(scene, &materials, &geometry, &mut images, &mut data);
+    if lights.kinds.is_empty() {
         let mut plan = plan(&scene.with_white_sky(), options)?;
         plan.warnings.push(Warning {
             place: "lights".to_owned(),
@@ -125,13 +160,6 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         });
         return Ok(plan);
     }
-    let mut warnings = Vec::new();
-    let mut data = SceneData::default();
-    let mut images = images::Images::default();
-
-    let materials = materials::plan_materials(scene, options, &mut images, &mut warnings);
-    let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
-    let lights = lights::plan_lights(scene, &materials, &geometry, &mut images, &mut data);
     let (camera, camera_name) =
         camera::place(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
     images.pack(scene, &mut data)?;
@@ -140,18 +168,19 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
 
     Ok(Plan {
         name: scene.name.clone(),
+        binding: options.binding,
         structure: Structure {
             programs: materials.programs,
             lights: lights.kinds,
             camera,
             sampler: options.sampler,
-            culling: geometry.culling,
         },
         data,
-        materials: materials.names,
-        light_counts: lights.counts,
+        materials: materials.uses,
+        lights: lights.uses,
         camera_name,
         warnings,
+        dismissed: [&scene.dismissed[..], &materials.dismissed].concat(),
     })
 }
 
@@ -164,6 +193,8 @@ struct PlannedMaterial {
     params: u32,
     /// Its surfaces are not seen from behind.
     culled: bool,
+    /// It has alpha.
+    lets_through: bool,
     /// Alpha is never enough: the surface is not there at all.
     invisible: bool,
 }
@@ -172,10 +203,11 @@ struct PlannedMaterial {
 #[derive(Debug, Clone, Default)]
 struct Materials {
     programs: Vec<Program>,
-    names: Vec<Vec<String>>,
+    uses: Vec<Vec<MaterialUse>>,
     params: Vec<u32>,
     /// By the material's number in the description.
     planned: Vec<Option<PlannedMaterial>>,
+    dismissed: Vec<Dismissed>,
 }
 
 impl Materials {
@@ -187,20 +219,6 @@ impl Materials {
 }
 
 impl SceneDesc {
-    /// Something shines: an environment, a punctual light, or the material of an instance.
-    fn has_light(&self) -> bool {
-        let emits = |&color: &[f32; 3]| color.iter().any(|c| *c > 0.0);
-        self.environment.is_some()
-            || self.lights.iter().any(|light| emits(&light.intensity))
-            || self.instances.iter().any(|instance| {
-                emits(
-                    &self.materials[self.meshes[instance.mesh].material]
-                        .emission
-                        .factor,
-                )
-            })
-    }
-
     /// The scene under a sky of radiance 1.
     fn with_white_sky(&self) -> Self {
         let mut scene = self.clone();
@@ -217,16 +235,5 @@ impl SceneDesc {
             rotation: 0.0,
         });
         scene
-    }
-}
-
-/// Which sides are seen, given how many triangles are culled.
-fn culling(culled: usize, triangles: usize) -> Culling {
-    if culled == 0 {
-        Culling::None
-    } else if culled == triangles {
-        Culling::Back
-    } else {
-        Culling::PerTriangle
     }
 }

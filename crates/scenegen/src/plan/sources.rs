@@ -1,12 +1,17 @@
 //! Sources of a material's inputs, and its parameter block.
 
+use std::collections::BTreeMap;
+
 use residual_render::program::{ColorNode, ImageNode, ScalarNode};
 use residual_render::surface::Attributes;
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Image, UvMap};
 
 use super::Binding;
 use super::images::Images;
-use crate::desc::{ColorInput, Filter, ScalarInput, SceneDesc, Texels, TextureUse, Wrap};
+use crate::desc::{
+    ColorInput, Dismissed, Filter, ScalarInput, SceneDesc, Texels, TextureUse, Wrap,
+};
+use crate::effect::Effect;
 
 /// Turns the inputs of one material's description into sources, collecting parameters and the attributes read.
 pub(super) struct Sources<'a> {
@@ -14,8 +19,25 @@ pub(super) struct Sources<'a> {
     binding: Binding,
     available: Attributes,
     images: &'a mut Images,
+    /// The material, for messages.
+    place: String,
     params: Vec<u32>,
     read: Attributes,
+    /// Inputs that several lobes share become one source.
+    scalars: Vec<(ScalarInput, ScalarNode)>,
+    colors: Vec<(ColorInput, bool, ColorNode)>,
+    image_names: BTreeMap<u32, String>,
+    dismissed: Vec<Dismissed>,
+}
+
+/// What a material's sources amount to, beside its program.
+pub(super) struct Collected {
+    /// The parameter block.
+    pub(super) params: Vec<u32>,
+    /// Names of the images that are read, by their slots in the parameter block.
+    pub(super) images: BTreeMap<u32, String>,
+    /// Inputs that change nothing.
+    pub(super) dismissed: Vec<Dismissed>,
 }
 
 impl<'a> Sources<'a> {
@@ -24,15 +46,20 @@ impl<'a> Sources<'a> {
         binding: Binding,
         available: Attributes,
         images: &'a mut Images,
+        place: String,
     ) -> Self {
-        let read = Attributes::NONE;
         Self {
             scene,
             binding,
             available,
             images,
+            place,
             params: Vec::new(),
-            read,
+            read: Attributes::NONE,
+            scalars: Vec::new(),
+            colors: Vec::new(),
+            image_names: BTreeMap::new(),
+            dismissed: Vec::new(),
         }
     }
 
@@ -41,8 +68,24 @@ impl<'a> Sources<'a> {
         std::mem::take(&mut self.read)
     }
 
-    pub(super) fn into_params(self) -> Vec<u32> {
-        self.params
+    /// Notes that something of the material changes nothing.
+    pub(super) fn dismiss(&mut self, effect: Effect, reason: impl Into<String>) {
+        let dismissed = Dismissed {
+            effect: Some(effect),
+            place: self.place.clone(),
+            reason: reason.into(),
+        };
+        if !self.dismissed.contains(&dismissed) {
+            self.dismissed.push(dismissed);
+        }
+    }
+
+    pub(super) fn collected(self) -> Collected {
+        Collected {
+            params: self.params,
+            images: self.image_names,
+            dismissed: self.dismissed,
+        }
     }
 
     fn param(&mut self, words: impl IntoIterator<Item = u32>) -> u32 {
@@ -104,15 +147,39 @@ impl<'a> Sources<'a> {
 
     /// A colour input; with `vertex`, times the vertex colour where meshes have one.
     pub(super) fn color(&mut self, input: &ColorInput, vertex: bool) -> ColorNode {
-        let mut node = self.constant_color(input.factor);
-        if node == ColorNode::Const([0.0; 3]) {
+        let vertex = vertex && self.available.colors;
+        let mut known = self.colors.iter();
+        if let Some((.., node)) = known.find(|(i, v, _)| (i, *v) == (input, vertex)) {
+            return node.clone();
+        }
+        let node = self.new_color(input, vertex);
+        self.colors.push((input.clone(), vertex, node.clone()));
+        node
+    }
+
+    fn new_color(&mut self, input: &ColorInput, vertex: bool) -> ColorNode {
+        let mut factor = input.factor;
+        let mut texture = input.texture.as_ref();
+        if let Some(of) = texture {
+            let extremes = [0, 1, 2].map(|k| self.extremes(of, k, AnyFormat::SrgbRgba8));
+            if factor == [0.0; 3] {
+                self.dismiss_image(of, "its factor is 0");
+                texture = None;
+            } else if extremes.iter().all(|[least, greatest]| least == greatest) {
+                self.dismiss_image(of, "it is of one colour");
+                factor = [0, 1, 2].map(|k| factor[k] * extremes[k][0]);
+                texture = None;
+            }
+        }
+        let mut node = self.constant_color(factor);
+        if factor == [0.0; 3] {
             return node;
         }
-        if let Some(texture) = &input.texture {
+        if let Some(texture) = texture {
             let image = ColorNode::Image(self.image(texture, 0, AnyFormat::SrgbRgba8));
             node = self.color_product(node, image);
         }
-        if vertex && self.available.colors {
+        if vertex {
             self.read.colors = true;
             node = self.color_product(node, ColorNode::VertexColor);
         }
@@ -121,14 +188,31 @@ impl<'a> Sources<'a> {
 
     /// A scalar input.
     pub(super) fn scalar(&mut self, input: &ScalarInput) -> ScalarNode {
-        let factor = self.number(input.factor);
-        match &input.texture {
-            Some((texture, channel)) if input.factor != 0.0 => {
-                let texel = self.channel(texture, *channel);
-                self.scalar_product(factor, texel)
-            }
-            _ => factor,
+        let mut known = self.scalars.iter();
+        if let Some((_, node)) = known.find(|(other, _)| other == input) {
+            return node.clone();
         }
+        let node = self.new_scalar(input);
+        self.scalars.push((input.clone(), node.clone()));
+        node
+    }
+
+    fn new_scalar(&mut self, input: &ScalarInput) -> ScalarNode {
+        let Some((texture, channel)) = &input.texture else {
+            return self.number(input.factor);
+        };
+        if input.factor == 0.0 {
+            self.dismiss_image(texture, "its factor is 0");
+            return self.number(0.0);
+        }
+        let [least, greatest] = self.extremes(texture, *channel, AnyFormat::LinearRgba8);
+        if least == greatest {
+            self.dismiss_image(texture, "its channel is the same everywhere");
+            return self.number(input.factor * least);
+        }
+        let factor = self.number(input.factor);
+        let texel = self.channel(texture, *channel);
+        self.scalar_product(factor, texel)
     }
 
     /// Alpha: an input, times the vertex alpha where meshes have one.
@@ -141,30 +225,39 @@ impl<'a> Sources<'a> {
         alpha
     }
 
-    /// Alpha, if it is the same everywhere.
-    pub(super) fn known_alpha(&self, input: &ScalarInput) -> Option<f32> {
+    /// Least and greatest alpha of a material, if that is known.
+    pub(super) fn alpha_extremes(&mut self, input: &ScalarInput) -> Option<[f32; 2]> {
         if self.available.colors {
             return None;
         }
-        let Some((texture, channel)) = &input.texture else {
-            return Some(input.factor);
+        let texels = match &input.texture {
+            Some((texture, channel)) => self.extremes(texture, *channel, AnyFormat::LinearRgba8),
+            None => [1.0; 2],
         };
+        Some(texels.map(|texel| input.factor * texel))
+    }
+
+    /// Whether a normal map bends no normal: its texels are one, within a code of (0.5, 0.5, 1), which bytes cannot
+    /// write exactly.
+    pub(super) fn is_flat(&mut self, texture: &TextureUse) -> bool {
+        const FLAT: [f32; 3] = [0.5, 0.5, 1.0];
+        let channels = [0, 1, 2].map(|k| self.extremes(texture, k, AnyFormat::LinearRgba8));
+        channels.iter().zip(FLAT).all(|([least, greatest], flat)| {
+            least == greatest && (least - flat).abs() < 1.0 / 255.0
+        })
+    }
+
+    fn extremes(&mut self, texture: &TextureUse, channel: usize, bytes: AnyFormat) -> [f32; 2] {
+        let image = self.scene.textures[texture.texture].image;
+        self.images.extremes(self.scene, image, channel, bytes)
+    }
+
+    fn dismiss_image(&mut self, texture: &TextureUse, reason: &str) {
         let image = &self.scene.images[self.scene.textures[texture.texture].image];
-        let first = match &image.texels {
-            Texels::Rgba8(texels) => {
-                let first = texels[0][*channel];
-                let uniform = texels.iter().all(|texel| texel[*channel] == first);
-                uniform.then(|| f32::from(first) / 255.0)
-            }
-            Texels::RgbaF32(texels) => {
-                let first = texels[0][*channel];
-                texels
-                    .iter()
-                    .all(|texel| texel[*channel] == first)
-                    .then_some(first)
-            }
-        };
-        first.map(|texel| texel * input.factor)
+        self.dismiss(
+            Effect::Textures,
+            format!("image {:?}: {reason}", image.name),
+        );
     }
 
     /// One channel of a texture, linear.
@@ -198,6 +291,8 @@ impl<'a> Sources<'a> {
         }
         let place = self.images.place(self.scene, desc.image);
         let slot = self.param_row(place);
+        let name = self.scene.images[desc.image].name.clone();
+        self.image_names.insert(slot, name);
         let transform = texture.transform.map(|matrix| {
             let [first, _] = matrix.map(|row| self.param_row(row.map(f32::to_bits)));
             first

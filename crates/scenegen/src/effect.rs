@@ -1,0 +1,59 @@
+//! The list of all effects.
+
+use std::fmt;
+
+macro_rules! effects {
+    ($($(#[doc = $doc:literal])* $name:ident = $text:literal,)*) => {
+        /// Something a renderer can simulate.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Effect {
+            $(#[doc = $text] $name,)*
+        }
+
+        impl Effect {
+            /// All effects.
+            pub const ALL: &[Self] = &[$(Self::$name,)*];
+        }
+
+        impl fmt::Display for Effect {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self { $(Self::$name => $text,)* })
+            }
+        }
+    };
+}
+
+effects! {
+    DiffuseReflection = "diffuse reflection",
+    GlossyCoat = "glossy coat",
+    MetallicReflection = "metallic reflection",
+    PhongReflection = "Phong reflection",
+    ThinTransmission = "thin transmission",
+    Refraction = "refraction",
+    MixedLobes = "mixed lobes",
+    Textures = "textures",
+    NearestFilter = "nearest filter",
+    BilinearFilter = "bilinear filter",
+    RepeatWrap = "repeat wrap",
+    MirrorWrap = "mirror wrap",
+    ClampWrap = "clamp wrap",
+    SrgbTexels = "sRGB texels",
+    LinearTexels = "linear texels",
+    FloatTexels = "float texels",
+    TextureTransforms = "texture transforms",
+    SecondUvSet = "second UV set",
+    VertexColors = "vertex colours",
+    SmoothNormals = "smooth normals",
+    NormalMaps = "normal maps",
+    AlphaMasks = "alpha masks",
+    AlphaBlending = "alpha blending",
+    BackFaceCulling = "back-face culling",
+    EmittingSurfaces = "emitting surfaces",
+    TexturedEmission = "textured emission",
+    PointLights = "point lights",
+    SpotLights = "spot lights",
+    DirectionalLights = "directional lights",
+    Environment = "environment",
+    PerspectiveCamera = "perspective camera",
+    OrthographicCamera = "orthographic camera",
+}
