@@ -95,37 +95,13 @@ pub fn interleaved(
 pub fn thread_time() -> Duration {
     #[cfg(unix)]
     {
-        clock(rustix::time::ClockId::ThreadCPUTime)
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+        Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
     }
     #[cfg(not(unix))]
     {
-        wall_clock()
+        residual_frontend::process_time()
     }
-}
-
-/// CPU time of all threads; wall-clock time where the system does not tell.
-pub fn process_time() -> Duration {
-    #[cfg(unix)]
-    {
-        clock(rustix::time::ClockId::ProcessCPUTime)
-    }
-    #[cfg(not(unix))]
-    {
-        wall_clock()
-    }
-}
-
-#[cfg(unix)]
-fn clock(id: rustix::time::ClockId) -> Duration {
-    let time = rustix::time::clock_gettime(id);
-    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
-}
-
-#[cfg(not(unix))]
-fn wall_clock() -> Duration {
-    use std::{sync::OnceLock, time::Instant};
-    static START: OnceLock<Instant> = OnceLock::new();
-    START.get_or_init(Instant::now).elapsed()
 }
 
 /// Keeps the thread on the processor it is on, until dropped; does nothing where the system has no such call.

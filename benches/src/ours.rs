@@ -14,7 +14,6 @@ use residual_bvh::{
 
 use crate::contender::Stream;
 use crate::isa::Isa;
-use crate::measure::process_time;
 use crate::on_isa;
 use crate::scene::Mesh;
 
@@ -168,10 +167,10 @@ pub fn build_tree<const N: usize, const P: usize>(
     mesh: &Mesh,
     quality: BuildQuality,
 ) -> Tree<N, P> {
-    let start = process_time();
+    let start = residual_frontend::process_time();
     let bvh = build::<N, P>(&mesh.positions, &mesh.triangles, None, quality);
     let cost = BuildCost {
-        seconds: (process_time() - start).as_secs_f64(),
+        seconds: (residual_frontend::process_time() - start).as_secs_f64(),
         sah_cost: f64::from(bvh.sah_cost()),
         memory_bytes: bvh.memory_bytes(),
     };

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use residual_device_cpu::{Counters, CpuDevice, RenderOptions, SceneView, TileRenderer};
 use serde_json::{Value, json};
 
-use crate::measure::{Estimate, process_time};
+use crate::measure::Estimate;
 
 /// One way to render a scene.
 pub struct RenderContender<'a> {
@@ -72,14 +72,14 @@ pub fn renders(
         for turn in 0..count {
             let index = (round + turn) % count;
             let contender = &contenders[index];
-            let before = process_time();
+            let before = residual_frontend::process_time();
             let (film, report) = device.render(
                 || contender.renderer,
                 &contender.view,
                 options,
                 |_| ControlFlow::Continue(()),
             );
-            let used = process_time() - before;
+            let used = residual_frontend::process_time() - before;
             if round > 0 {
                 clock[index].push(report.elapsed.as_secs_f64());
                 cpu[index].push(used.as_secs_f64());

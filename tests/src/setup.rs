@@ -129,7 +129,7 @@ impl<'a> Prepared<'a> {
             max_depth: look.max_depth,
             seed: look.seed,
         };
-        let go_on = |_| ControlFlow::Continue(());
+        let go_on = |_: residual_device_cpu::Progress<'_>| ControlFlow::Continue(());
         device.render(|| renderer, &self.view(), &options, go_on).0
     }
 }

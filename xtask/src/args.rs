@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 use std::str::FromStr;
-use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use residual_device_cpu::LaneCount;
+use residual_frontend::options::Size;
 
 /// Generates a renderer for a scene, and renders it.
 #[derive(Parser)]
@@ -23,6 +23,11 @@ pub(crate) enum Command {
     Inspect(InspectArgs),
     /// Print the renderer that is generated for a scene
     Emit(EmitArgs),
+    /// Make a program that renders one scene, and needs nothing else
+    Build(BuildArgs),
+    /// Compiled renderers that are kept
+    #[command(subcommand)]
+    Cache(CacheCommand),
     /// Measure speed
     #[command(subcommand)]
     Bench(BenchCommand),
@@ -79,36 +84,14 @@ pub(crate) struct SceneArgs {
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// Image file (.png, .exr); may be given more than once
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: Vec<PathBuf>,
-    /// Samples per pixel [default: 64, or as many as --time allows]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) spp: Option<u32>,
-    /// Stop after this time (30s, 2m, 500ms)
-    #[arg(long, value_name = "TIME", value_parser = duration)]
-    pub(crate) time: Option<Duration>,
-    /// Most vertices of a path: 1 is emission seen directly, 2 adds direct light
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub(crate) max_depth: u32,
-    /// Seed of the random numbers
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(crate) seed: u32,
-    /// Threads; 0 is one for each processor
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(crate) threads: usize,
+    #[command(flatten)]
+    pub(crate) render: residual_frontend::options::RenderArgs,
     /// How the renderer is made from the scene
     #[arg(long, value_enum, default_value_t = TierArg::Auto)]
     pub(crate) tier: TierArg,
     /// Paths shaded at once: 1, 4, 8 or 16; the image does not depend on it [default: what suits the machine]
     #[arg(long, value_name = "N")]
     pub(crate) lanes: Option<LaneCount>,
-    /// Statistics on standard output
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    pub(crate) stats: Option<StatsArg>,
-    /// No progress and no summary
-    #[arg(short, long)]
-    pub(crate) quiet: bool,
 }
 
 #[derive(Args)]
@@ -133,6 +116,29 @@ pub(crate) struct EmitArgs {
     /// Paths shaded at once: 1, 4, 8 or 16 [default: what suits the machine]
     #[arg(long, value_name = "N")]
     pub(crate) lanes: Option<LaneCount>,
+}
+
+#[derive(Args)]
+pub(crate) struct BuildArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The program
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Build for this processor (x86-64-v3, …) instead of this machine's; the first time takes minutes
+    #[arg(long, value_name = "CPU")]
+    pub(crate) target_cpu: Option<String>,
+    /// Paths shaded at once: 1, 4, 8 or 16 [default: what suits the machine, or 8 with --target-cpu]
+    #[arg(long, value_name = "N")]
+    pub(crate) lanes: Option<LaneCount>,
+}
+
+#[derive(Clone, Copy, Subcommand)]
+pub(crate) enum CacheCommand {
+    /// Show them
+    List,
+    /// Remove them
+    Clear,
 }
 
 #[derive(Subcommand)]
@@ -269,6 +275,8 @@ pub(crate) enum SpecializeArg {
     Structure,
     /// All numbers are constants
     Constants,
+    /// Nothing is compiled: as --tier interpreted
+    None,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -279,14 +287,6 @@ pub(crate) enum TierArg {
     Interpreted,
     /// Compiled before the first ray
     Specialized,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum StatsArg {
-    /// For people
-    Text,
-    /// One JSON object as the last line
-    Json,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -312,34 +312,6 @@ impl FromStr for Triple {
         three
             .map(Self)
             .map_err(|_| "expected three numbers, as in 1,0.5,-2".to_owned())
-    }
-}
-
-/// Width and height.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Size(pub(crate) [u32; 2]);
-
-impl FromStr for Size {
-    type Err = String;
-    fn from_str(text: &str) -> Result<Self, String> {
-        /// What a film keeps of so many pixels still fits a workstation's memory (5 GiB).
-        const MOST_PIXELS: u64 = 1 << 27;
-        let error = || {
-            "expected width and height from 1 to 65536, at most 134 million pixels, as in 1280x720"
-                .to_owned()
-        };
-        let (width, height) = text.split_once(['x', 'X']).ok_or_else(error)?;
-        let parse = |part: &str| {
-            let number = part.trim().parse::<u32>().ok();
-            number.filter(|n| (1..=65536).contains(n)).ok_or_else(error)
-        };
-        let size = [parse(width)?, parse(height)?];
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
-        if pixels <= MOST_PIXELS {
-            Ok(Self(size))
-        } else {
-            Err(error())
-        }
     }
 }
 
@@ -373,26 +345,6 @@ fn field_of_view(text: &str) -> Result<f32, String> {
     }
 }
 
-fn duration(text: &str) -> Result<Duration, String> {
-    let units = [
-        ("ms", 1e-3),
-        ("s", 1.0),
-        ("m", 60.0),
-        ("h", 3600.0),
-        ("", 1.0),
-    ];
-    let (number, scale) = units
-        .iter()
-        .find_map(|(unit, scale)| Some((text.strip_suffix(unit)?.parse::<f64>().ok()?, scale)))
-        .ok_or_else(|| "expected a time, as in 30s, 2m or 500ms".to_owned())?;
-    let seconds = number * scale;
-    if seconds > 0.0 && seconds < 1e9 {
-        Ok(Duration::from_secs_f64(seconds))
-    } else {
-        Err("expected a time above 0".to_owned())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -405,14 +357,8 @@ mod tests {
 
     #[test]
     fn values_parse() {
-        assert_eq!("640x480".parse(), Ok(Size([640, 480])));
-        assert!("65536x65536".parse::<Size>().is_err());
-        assert!("0x480".parse::<Size>().is_err() && "640".parse::<Size>().is_err());
         assert_eq!("1,-2.5, 3".parse(), Ok(Triple([1.0, -2.5, 3.0])));
         assert!("1,2".parse::<Triple>().is_err() && "1,2,nan".parse::<Triple>().is_err());
-        assert_eq!(duration("500ms"), Ok(Duration::from_millis(500)));
-        assert_eq!(duration("2m"), Ok(Duration::from_secs(120)));
-        assert!(duration("-1s").is_err() && duration("soon").is_err());
         assert!(field_of_view("180").is_err());
     }
 }

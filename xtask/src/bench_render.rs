@@ -11,6 +11,7 @@ use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{
     AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, Traversal,
 };
+use residual_frontend::hierarchy_quality;
 use residual_render::sampler::AnySampler;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, plan};
@@ -18,7 +19,6 @@ use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOpti
 use crate::args::RenderBenchArgs;
 use crate::bench::own_scenes;
 use crate::compile::compile;
-use crate::render::quality;
 
 pub(crate) fn run(args: &RenderBenchArgs) -> Result<()> {
     let scenes = if args.scene.is_empty() {
@@ -112,7 +112,11 @@ fn measure(
         })
         .collect::<Result<Vec<_>>>()?;
     let triangles = plan.data.triangle_count();
-    let bvh = AnyBvh::build(&plan.data, LaneCount::native(), quality(triangles));
+    let bvh = AnyBvh::build(
+        &plan.data,
+        LaneCount::native(),
+        hierarchy_quality(triangles),
+    );
     let (single, packets) = (
         embree.map(EmbreeTraversal::single),
         embree.map(EmbreeTraversal::packets),

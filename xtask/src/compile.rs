@@ -1,34 +1,21 @@
-//! Compiling emitted code: a crate of its own beside the workspace's build, made by cargo, loaded.
+//! Compiling emitted code: cargo builds a member of the workspace around it; the result is cached and loaded.
 
-use std::fs;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::fs::{self, File, TryLockError};
 use std::io::Read as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
+use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use residual_device_cpu::LaneCount;
 use residual_device_cpu::plugin::LoadedRenderer;
+use residual_frontend::output::write_atomically;
 use residual_scenegen::emit::rust;
 use residual_scenegen::plan::Plan;
 
-/// The workspace that this command line was built from.
-fn workspace() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("xtask lies in the workspace")
-}
-
-/// Where the workspace's builds are; compiled renderers share their dependencies with them.
-fn target_directory() -> PathBuf {
-    let given = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-    // Cargo is run from the workspace; a relative path is relative to here.
-    given.map_or_else(
-        || workspace().join("target"),
-        |path| std::path::absolute(&path).unwrap_or(path),
-    )
-}
+use crate::cache::Cache;
+use crate::workspace;
 
 /// The name of the `LaneCount` variant.
 pub fn lanes_name(lanes: LaneCount) -> String {
@@ -40,7 +27,16 @@ pub fn lanes_name(lanes: LaneCount) -> String {
 /// # Errors
 /// If there is no cargo, or it fails.
 pub fn compile(plan: &Plan, lanes: LaneCount) -> Result<LoadedRenderer> {
-    Compiler::default().compile(plan, lanes)
+    Ok(Compiler::default().compile(plan, lanes)?.0)
+}
+
+/// Where a compiled renderer came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// It was compiled.
+    Compiled,
+    /// It had been compiled before.
+    Cached,
 }
 
 /// One compilation, which can be given up from another thread.
@@ -55,18 +51,51 @@ struct State {
     given_up: bool,
 }
 
+/// A member of the workspace that is built around emitted code.
+pub(crate) struct Build<'a> {
+    pub(crate) package: &'a str,
+    /// The emitted code.
+    pub(crate) source: &'a str,
+    /// What cargo makes of it.
+    pub(crate) file: &'a str,
+    /// Compiler flags instead of the workspace's.
+    pub(crate) rustflags: Option<&'a str>,
+    pub(crate) target_directory: &'a Path,
+}
+
 impl Compiler {
-    pub(crate) fn compile(&self, plan: &Plan, lanes: LaneCount) -> Result<LoadedRenderer> {
+    pub(crate) fn compile(
+        &self,
+        plan: &Plan,
+        lanes: LaneCount,
+    ) -> Result<(LoadedRenderer, Origin)> {
         let mut source = rust::module(plan, &lanes_name(lanes));
         source.push_str("\nresidual_device_cpu::export_renderer!();\n");
-        let mut hasher = DefaultHasher::new();
-        source.hash(&mut hasher);
-        let name = format!("residual_scene_{:016x}", hasher.finish());
-        let library = self
-            .build(&name, &source)
-            .with_context(|| format!("compiling the renderer of {:?}", plan.name))?;
-        // SAFETY: cargo has just made this library from code that we emitted, for these sources and this lane count.
-        Ok(unsafe { LoadedRenderer::load(library.as_os_str(), lanes) }?)
+        let compile = || -> Result<_> {
+            let cache = Cache::open();
+            let key = Cache::key(&source)?;
+            if let Some(library) = cache.find(&key, &source) {
+                // One that does not load is compiled again.
+                if let Ok(renderer) = load(&library, lanes) {
+                    return Ok((renderer, Origin::Cached));
+                }
+            }
+            let file = format!(
+                "{}residual_compiled_scene{}",
+                std::env::consts::DLL_PREFIX,
+                std::env::consts::DLL_SUFFIX
+            );
+            let build = Build {
+                package: "residual-compiled-scene",
+                source: &source,
+                file: &file,
+                rustflags: None,
+                target_directory: &workspace::target_directory(),
+            };
+            let library = self.build(&build, |library| cache.keep(&key, &source, library))?;
+            Ok((load(&library, lanes)?, Origin::Compiled))
+        };
+        compile().with_context(|| format!("compiling the renderer of {:?}", plan.name))
     }
 
     /// Ends the compilation if it still runs: nobody waits for it any more.
@@ -87,44 +116,59 @@ impl Compiler {
             .given_up
     }
 
-    /// Builds a crate of this name and source; returns the path of the library.
-    fn build(&self, name: &str, source: &str) -> Result<PathBuf> {
-        let workspace = workspace();
-        let target = target_directory();
-        let directory = target.join("residual").join(name);
-        fs::create_dir_all(directory.join("src"))
-            .with_context(|| format!("creating {}", directory.display()))?;
-        write_if_changed(&directory.join("Cargo.toml"), &manifest(name, workspace))?;
-        write_if_changed(&directory.join("src/lib.rs"), source)?;
-        // The same versions of everything as the workspace's, so that its builds are used.
-        let lock =
-            fs::read_to_string(workspace.join("Cargo.lock")).context("reading Cargo.lock")?;
-        if !directory.join("Cargo.lock").exists() {
-            write_if_changed(&directory.join("Cargo.lock"), &lock)?;
+    /// Has cargo build a package, and `take` take the result before anybody builds it anew.
+    pub(crate) fn build<R>(
+        &self,
+        build: &Build<'_>,
+        take: impl FnOnce(&Path) -> Result<R>,
+    ) -> Result<R> {
+        let _lock = self.lock()?;
+        let source = workspace::own_directory().join(format!("{}.rs", build.package));
+        // Cargo rebuilds what has a new time stamp; a file that stays the same keeps its own.
+        if !fs::read_to_string(&source).is_ok_and(|old| old == build.source) {
+            write_atomically(&source, build.source.as_bytes())?;
         }
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut command = Command::new(&cargo);
+        if let Some(flags) = build.rustflags {
+            command.env("RUSTFLAGS", flags);
+        }
         command
             // The workspace's `.cargo/config.toml` says for which machine to build.
-            .current_dir(workspace)
-            .args([
-                "build",
-                "--release",
-                "--offline",
-                "--quiet",
-                "--manifest-path",
-            ])
-            .arg(directory.join("Cargo.toml"))
+            .current_dir(workspace::root())
+            .env("RESIDUAL_SCENE", source)
+            .args(["rustc", "--release", "--offline", "--quiet", "--package"])
+            .arg(build.package)
             .arg("--target-dir")
-            .arg(&target);
+            .arg(build.target_directory)
+            // Without it, 13 MiB of line tables come with every library.
+            .args(["--", "-Cstrip=debuginfo"]);
         self.run(command)
             .with_context(|| format!("running {}", cargo.display()))?;
-        let file = format!(
-            "{}{name}{}",
-            std::env::consts::DLL_PREFIX,
-            std::env::consts::DLL_SUFFIX
-        );
-        Ok(target.join("release").join(file))
+        take(&build.target_directory.join("release").join(build.file))
+    }
+
+    /// Only one process at a time builds. Waiting for the others can be given up, too.
+    fn lock(&self) -> Result<File> {
+        let directory = workspace::own_directory();
+        let path = directory.join("lock");
+        let open = || {
+            fs::create_dir_all(&directory)?;
+            File::create(&path)
+        };
+        let file = open().with_context(|| format!("creating {}", path.display()))?;
+        loop {
+            match file.try_lock() {
+                Ok(()) => return Ok(file),
+                Err(TryLockError::WouldBlock) if !self.was_given_up() => {
+                    std::thread::sleep(Duration::from_millis(20));
+                }
+                Err(TryLockError::WouldBlock) => bail!("given up"),
+                Err(TryLockError::Error(error)) => {
+                    return Err(error).with_context(|| format!("locking {}", path.display()));
+                }
+            }
+        }
     }
 
     /// Runs cargo to its end. Its errors are read before it is waited for, so that it can be killed meanwhile.
@@ -154,24 +198,8 @@ impl Compiler {
     }
 }
 
-/// The crate's manifest. Its profile is the workspace's, so that dependencies are the same builds.
-fn manifest(name: &str, workspace: &Path) -> String {
-    let crates = workspace.join("crates");
-    format!(
-        "[package]\nname = {name:?}\nversion = \"0.0.0\"\nedition = \"2024\"\npublish = false\n\n\
-         [lib]\ncrate-type = [\"cdylib\"]\n\n\
-         [dependencies]\nresidual-device-cpu = {{ path = {:?} }}\n\n\
-         [profile.release]\ndebug = \"line-tables-only\"\n\n\
-         [profile.release.package.{name}]\ndebug = false\n\n\
-         [workspace]\n",
-        crates.join("device-cpu")
-    )
-}
-
-/// Cargo rebuilds what has a new time stamp; a file that stays the same keeps its own.
-fn write_if_changed(path: &Path, content: &str) -> Result<()> {
-    if fs::read_to_string(path).is_ok_and(|old| old == content) {
-        return Ok(());
-    }
-    fs::write(path, content).with_context(|| format!("writing {}", path.display()))
+fn load(library: &Path, lanes: LaneCount) -> Result<LoadedRenderer> {
+    // SAFETY: the cache holds only libraries that cargo made from code that we emitted; the caller asks for the one that
+    // was made with this lane count.
+    Ok(unsafe { LoadedRenderer::load(library.as_os_str(), lanes) }?)
 }

@@ -22,7 +22,7 @@ pub(crate) fn run(args: &EmitArgs) -> Result<()> {
             fs::create_dir_all(directory)
                 .with_context(|| format!("creating {}", directory.display()))?;
             let path = directory.join(format!("{}.{extension}", plan.name));
-            crate::output::write_atomically(&path, text.as_bytes())?;
+            residual_frontend::output::write_atomically(&path, text.as_bytes())?;
             eprintln!("{}", path.display());
         }
     }

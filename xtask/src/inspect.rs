@@ -2,12 +2,12 @@
 
 use anyhow::Result;
 use residual_device_cpu::LaneCount;
+use residual_frontend::hierarchy_quality;
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{BindingTimes, Decision, Plan};
 use serde_json::{Map, Value, json};
 
 use crate::args::InspectArgs;
-use crate::render::quality;
 use crate::scene;
 
 pub(crate) fn run(args: &InspectArgs) -> Result<()> {
@@ -34,7 +34,7 @@ fn decisions(plan: &Plan) -> Vec<Decision> {
         text: format!(
             "{} children a node, as many as there are lanes; quality {:?}, by the number of triangles",
             lanes.count().max(4),
-            quality(plan.data.triangle_count())
+            hierarchy_quality(plan.data.triangle_count())
         ),
     });
     decisions

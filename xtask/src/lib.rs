@@ -5,13 +5,15 @@
 mod args;
 mod bench;
 mod bench_render;
+mod build;
+mod cache;
 pub mod compile;
 mod emit;
 mod inspect;
-mod output;
 mod render;
 mod scene;
-mod stats;
+mod tiers;
+mod workspace;
 
 use std::process::ExitCode;
 
@@ -26,6 +28,8 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Emit(args) => emit::run(&args),
+        Command::Build(args) => build::run(&args),
+        Command::Cache(command) => cache::run(command),
         Command::Bench(command) => bench::run(&command),
     };
     match result {

@@ -3,11 +3,24 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
+use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
+use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, View, plan};
 
 use crate::args::{CullingArg, SamplerArg, SceneArgs, SpecializeArg};
+
+/// What statistics say about a planned scene.
+pub(crate) fn summary(plan: &Plan) -> SceneSummary {
+    SceneSummary {
+        name: plan.name.clone(),
+        triangles: plan.data.triangle_count(),
+        programs: plan.structure.programs.len(),
+        effects: Effects::of(plan).iter().map(|e| e.to_string()).collect(),
+        bytes: plan.data.memory_bytes(),
+    }
+}
 
 /// Reads and plans the scene; warnings go to standard error.
 pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
@@ -37,7 +50,7 @@ pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
     };
     let options = PlanOptions {
         binding: match args.specialize {
-            SpecializeArg::Structure => Binding::Structure,
+            SpecializeArg::Structure | SpecializeArg::None => Binding::Structure,
             SpecializeArg::Constants => Binding::Constants,
         },
         camera,

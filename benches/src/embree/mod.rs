@@ -15,7 +15,6 @@ use std::rc::Rc;
 use libloading::Library;
 
 use crate::isa::Isa;
-use crate::measure::process_time;
 use crate::scene::Mesh;
 
 use ffi::{Api, Handle};
@@ -136,11 +135,11 @@ impl Embree {
                 ffi::FORMAT_UINT3,
                 &mesh.triangles,
             );
-            let start = process_time();
+            let start = residual_frontend::process_time();
             (api.rtcCommitGeometry)(geometry);
             (api.rtcAttachGeometry)(scene, geometry);
             (api.rtcCommitScene)(scene);
-            let seconds = (process_time() - start).as_secs_f64();
+            let seconds = (residual_frontend::process_time() - start).as_secs_f64();
             (api.rtcReleaseGeometry)(geometry);
             let error = (api.rtcGetDeviceError)(device);
             assert_eq!(error, 0, "Embree reports an error");

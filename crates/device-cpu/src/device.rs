@@ -34,11 +34,13 @@ pub struct RenderOptions {
 
 /// How far a render has come.
 #[derive(Clone, Copy, Debug)]
-pub struct Progress {
+pub struct Progress<'a> {
     /// Samples a pixel so far.
     pub samples: u32,
     /// Since the start of rendering.
     pub elapsed: Duration,
+    /// The image so far.
+    pub film: &'a Film,
 }
 
 /// What was done.
@@ -90,7 +92,7 @@ impl CpuDevice {
         mut renderer: impl FnMut() -> &'r dyn TileRenderer,
         scene: &SceneView<'_>,
         options: &RenderOptions,
-        mut progress: impl FnMut(Progress) -> ControlFlow<()>,
+        mut progress: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> (Film, RenderReport) {
         let [width, height] = options.size;
         let mut film = Film::new(width, height, self.tile_size);
@@ -132,6 +134,7 @@ impl CpuDevice {
             let so_far = Progress {
                 samples: done,
                 elapsed: start.elapsed(),
+                film: &film,
             };
             if progress(so_far).is_break() {
                 break;

@@ -38,13 +38,31 @@ where
 
     #[inline(always)]
     fn visit<M: Material<D>>(self, material: &M) {
-        let d = self.d;
+        material.shade_range(self);
+    }
+}
+
+/// Shading as a method of the material: the compiler puts methods beside their types, and emitted programs are modules
+/// of their own, so that they are compiled in parallel.
+trait ShadeRange<D>: Material<D> + Sized
+where
+    D: Lanes,
+{
+    #[inline(never)]
+    fn shade_range<S, L>(&self, shade: Shade<'_, D, S, L>)
+    where
+        S: Sampler<D>,
+        L: LightKinds<D> + ?Sized,
+    {
+        let d = shade.d;
         d.vectorize(
             #[inline(always)]
-            || self.run(material),
+            || shade.run(self),
         );
     }
 }
+
+impl<D: Lanes, M: Material<D>> ShadeRange<D> for M {}
 
 impl<D, S, L: ?Sized> Shade<'_, D, S, L> {
     #[inline(always)]

@@ -6,6 +6,7 @@
 use crate::domain::{Buffer, Domain};
 use crate::math::Vec3;
 use crate::math::vec3::vec3;
+use crate::scene_data::SceneData;
 use crate::surface::Ray;
 
 /// A camera: turns places on the film into rays.
@@ -53,6 +54,19 @@ impl<D: Domain> Camera<D> for Orthographic {
             dir: vector(d, 9).normalize(d),
             tmax: d.lit(f64::from(f32::MAX)),
         }
+    }
+}
+
+/// Fits a scene's camera to images of this width over height. What is seen from bottom to top stays.
+pub fn set_aspect(data: &mut SceneData, aspect: f32) {
+    let words = data.buffer_mut(Buffer::Camera);
+    let length = |words: &[u32]| {
+        let squares = words.iter().map(|&word| f32::from_bits(word).powi(2));
+        squares.sum::<f32>().sqrt()
+    };
+    let scale = aspect * length(&words[6..9]) / length(&words[3..6]);
+    for word in &mut words[3..6] {
+        *word = (f32::from_bits(*word) * scale).to_bits();
     }
 }
 

@@ -13,6 +13,9 @@ pub mod program;
 pub mod sampler;
 pub mod scene;
 pub mod scene_data;
+mod scene_file;
 pub mod surface;
 pub mod texture;
 pub mod tracer;
+
+pub use scene_file::NotSceneData;

@@ -9,15 +9,22 @@ use residual_render::film::Film;
 use residual_render::texture::srgb_code;
 
 /// What is written beside the pixels.
-pub(crate) struct Metadata {
-    pub(crate) scene: String,
-    pub(crate) samples: u64,
-    pub(crate) seconds: f64,
-    pub(crate) relmse: Option<f64>,
+pub struct Metadata {
+    /// Name of the scene.
+    pub scene: String,
+    /// Samples a pixel.
+    pub samples: u64,
+    /// Time of rendering.
+    pub seconds: f64,
+    /// Estimated relative mean squared error.
+    pub relmse: Option<f64>,
 }
 
 /// Refuses file names that [`write`] would refuse, before any work is done.
-pub(crate) fn check(path: &Path) -> Result<()> {
+///
+/// # Errors
+/// If the format is none of ours, or the directory does not exist or cannot be written to.
+pub fn check(path: &Path) -> Result<()> {
     match extension(path).as_str() {
         "png" | "exr" => {}
         _ => bail!("{}: images are written as .png or .exr", path.display()),
@@ -61,7 +68,10 @@ fn directory(path: &Path) -> &Path {
 }
 
 /// Writes the film as a PNG (sRGB) or an EXR (linear).
-pub(crate) fn write(path: &Path, film: &Film, metadata: &Metadata) -> Result<()> {
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write(path: &Path, film: &Film, metadata: &Metadata) -> Result<()> {
     let bytes = match extension(path).as_str() {
         "png" => png(film)?,
         _ => open_exr(film, metadata)?,
@@ -70,18 +80,35 @@ pub(crate) fn write(path: &Path, film: &Film, metadata: &Metadata) -> Result<()>
 }
 
 /// Writes a file by way of a temporary one beside it.
-pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+///
+/// # Errors
+/// If it cannot be written; what was there before stays.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_with_mode(path, bytes, 0o644)
+}
+
+/// Writes a program in the same way.
+///
+/// # Errors
+/// If it cannot be written; what was there before stays.
+pub fn write_executable(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_with_mode(path, bytes, 0o755)
+}
+
+fn write_with_mode(path: &Path, bytes: &[u8], mode: u32) -> Result<()> {
     let write = || -> std::io::Result<()> {
         let mut file = tempfile::NamedTempFile::new_in(directory(path))?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
-        // Temporary files are private; an image is as readable as any new file.
+        // Temporary files are private; these are as readable as any new file.
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
             file.as_file()
-                .set_permissions(std::fs::Permissions::from_mode(0o644))?;
+                .set_permissions(std::fs::Permissions::from_mode(mode))?;
         }
+        #[cfg(not(unix))]
+        let _ = mode;
         file.persist(path)?;
         Ok(())
     };

@@ -1,0 +1,21 @@
+//! What every program that renders shares, be it the command line or the renderer of a single scene: [options](options),
+//! a [session](session) with progress, interruption and images on the way, [statistics](stats), [image files](output).
+
+mod clock;
+pub mod options;
+pub mod output;
+pub mod session;
+pub mod stats;
+
+pub use clock::process_time;
+
+use residual_bvh::BuildQuality;
+
+/// The best hierarchy takes 6 s for a million triangles and saves a tenth of the tracing; the next takes less than 1 s.
+pub fn hierarchy_quality(triangles: usize) -> BuildQuality {
+    match triangles {
+        0..=150_000 => BuildQuality::Best,
+        150_001..=10_000_000 => BuildQuality::High,
+        _ => BuildQuality::Medium,
+    }
+}

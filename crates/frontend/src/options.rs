@@ -1,0 +1,124 @@
+//! Options of a render, as arguments.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use residual_device_cpu::RenderOptions;
+
+const DEFAULT_SAMPLES: u32 = 64;
+
+/// How long to render, and where to.
+#[derive(Args, Clone, Debug)]
+pub struct RenderArgs {
+    /// Image file (.png, .exr); may be given more than once
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Samples per pixel [default: 64, or as many as --time allows]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Stop after this time (30s, 2m, 500ms)
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    pub time: Option<Duration>,
+    /// Most vertices of a path: 1 is emission seen directly, 2 adds direct light
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub max_depth: u32,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u32,
+    /// Threads; 0 is one for each processor
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    /// Statistics on standard output
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub stats: Option<StatsFormat>,
+    /// No progress and no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl RenderArgs {
+    /// What the device is told.
+    pub fn render_options(&self, size: [u32; 2]) -> RenderOptions {
+        RenderOptions {
+            size,
+            samples: self.spp.or(self.time.is_none().then_some(DEFAULT_SAMPLES)),
+            time: self.time,
+            max_depth: self.max_depth,
+            seed: self.seed,
+        }
+    }
+}
+
+/// How statistics are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StatsFormat {
+    /// For people
+    Text,
+    /// One JSON object as the last line
+    Json,
+}
+
+/// Width and height of an image in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size(pub [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        /// What a film keeps of so many pixels still fits a workstation's memory (5 GiB).
+        const MOST_PIXELS: u64 = 1 << 27;
+        let error = || {
+            "expected width and height from 1 to 65536, at most 134 million pixels, as in 1280x720"
+                .to_owned()
+        };
+        let (width, height) = text.split_once(['x', 'X']).ok_or_else(error)?;
+        let parse = |part: &str| {
+            let number = part.trim().parse::<u32>().ok();
+            number.filter(|n| (1..=65536).contains(n)).ok_or_else(error)
+        };
+        let size = [parse(width)?, parse(height)?];
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        if pixels <= MOST_PIXELS {
+            Ok(Self(size))
+        } else {
+            Err(error())
+        }
+    }
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    let units = [
+        ("ms", 1e-3),
+        ("s", 1.0),
+        ("m", 60.0),
+        ("h", 3600.0),
+        ("", 1.0),
+    ];
+    let (number, scale) = units
+        .iter()
+        .find_map(|(unit, scale)| Some((text.strip_suffix(unit)?.parse::<f64>().ok()?, scale)))
+        .ok_or_else(|| "expected a time, as in 30s, 2m or 500ms".to_owned())?;
+    let seconds = number * scale;
+    if seconds > 0.0 && seconds < 1e9 {
+        Ok(Duration::from_secs_f64(seconds))
+    } else {
+        Err("expected a time above 0".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_parse() {
+        assert_eq!("640x480".parse(), Ok(Size([640, 480])));
+        assert!("65536x65536".parse::<Size>().is_err());
+        assert!("0x480".parse::<Size>().is_err() && "640".parse::<Size>().is_err());
+        assert_eq!(duration("500ms"), Ok(Duration::from_millis(500)));
+        assert_eq!(duration("2m"), Ok(Duration::from_secs(120)));
+        assert!(duration("-1s").is_err() && duration("soon").is_err());
+    }
+}

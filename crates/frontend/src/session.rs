@@ -1,0 +1,211 @@
+//! A render as people see it: progress, images on the way, Ctrl-C, the image at the end.
+
+use std::ffi::OsStr;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+use residual_device_cpu::{
+    CpuDevice, Progress, RenderOptions, RenderReport, SceneView, TileRenderer,
+};
+use residual_render::film::Film;
+
+use crate::options::{RenderArgs, StatsFormat};
+use crate::output::{self, Metadata};
+use crate::process_time;
+use crate::stats::Statistics;
+
+/// Images on the way are written no more often than that so large a part of the time goes into them.
+const PART_FOR_IMAGES: f64 = 0.02;
+
+/// What is set up before a scene is even loaded, so that mistakes show at once.
+pub struct Session<'a> {
+    args: &'a RenderArgs,
+    outputs: Vec<PathBuf>,
+    stop: Arc<AtomicBool>,
+    /// When the session began.
+    pub start: Instant,
+}
+
+/// What a render yields.
+pub struct Rendered {
+    /// The image.
+    pub film: Film,
+    /// What was done.
+    pub report: RenderReport,
+    /// CPU time of this process meanwhile.
+    pub cpu: Duration,
+    /// From the start of the session to the first image file.
+    pub first_image: Duration,
+}
+
+impl<'a> Session<'a> {
+    /// Checks the names of the images and listens for Ctrl-C. Without names, the image has the scene's.
+    ///
+    /// # Errors
+    /// If an image could not be written, or the system does not let us listen.
+    pub fn new(args: &'a RenderArgs, scene: &OsStr) -> Result<Self> {
+        let outputs = if args.output.is_empty() {
+            // Not `with_extension`: a name may have dots of its own.
+            let mut name = scene.to_owned();
+            name.push(".png");
+            vec![PathBuf::from(name)]
+        } else {
+            args.output.clone()
+        };
+        outputs.iter().try_for_each(|path| output::check(path))?;
+        Ok(Self {
+            args,
+            outputs,
+            stop: stop_on_interrupt()?,
+            start: Instant::now(),
+        })
+    }
+
+    /// Renders, showing progress, and writes the images: after the first pass, from time to time, and at the end.
+    /// `after_pass` is called after each.
+    ///
+    /// # Errors
+    /// If an image cannot be written.
+    pub fn render<'r>(
+        &self,
+        scene: &str,
+        device: &CpuDevice,
+        choose: impl FnMut() -> &'r dyn TileRenderer,
+        view: &SceneView<'_>,
+        options: &RenderOptions,
+        mut after_pass: impl FnMut(&Progress<'_>),
+    ) -> Result<Rendered> {
+        let bar = progress_bar(self.args, options);
+        let mut first_image = None;
+        let mut next_image = Duration::ZERO;
+        let mut failed = None;
+        let show = |progress: Progress<'_>| {
+            match options.samples {
+                Some(_) => bar.set_position(u64::from(progress.samples)),
+                None => bar.set_position(progress.elapsed.as_millis() as u64),
+            }
+            bar.set_message(format!("{} spp", progress.samples));
+            after_pass(&progress);
+            let is_last = options.samples == Some(progress.samples);
+            if !is_last && progress.elapsed >= next_image {
+                let start = Instant::now();
+                if let Err(error) = self.write(scene, progress.film, progress.elapsed) {
+                    failed = Some(error);
+                    return ControlFlow::Break(());
+                }
+                next_image = progress.elapsed + start.elapsed().div_f64(PART_FOR_IMAGES);
+                first_image.get_or_insert(self.start.elapsed());
+            }
+            if self.stop.load(Ordering::Relaxed) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let before = process_time();
+        let (film, report) = device.render(choose, view, options, show);
+        let cpu = process_time() - before;
+        bar.finish_and_clear();
+        if let Some(error) = failed {
+            return Err(error);
+        }
+        self.write(scene, &film, report.elapsed)?;
+        let first_image = first_image.unwrap_or_else(|| self.start.elapsed());
+        Ok(Rendered {
+            film,
+            report,
+            cpu,
+            first_image,
+        })
+    }
+
+    fn write(&self, scene: &str, film: &Film, elapsed: Duration) -> Result<()> {
+        let metadata = Metadata {
+            scene: scene.to_owned(),
+            samples: film.samples(),
+            seconds: elapsed.as_secs_f64(),
+            relmse: film.error().map(|error| error.relmse),
+        };
+        self.outputs
+            .iter()
+            .try_for_each(|path| output::write(path, film, &metadata))
+    }
+
+    /// Says how it went; statistics where they were asked for.
+    pub fn finish(&self, statistics: &Statistics<'_>) {
+        if !self.args.quiet {
+            self.summary(statistics);
+        }
+        match self.args.stats {
+            Some(StatsFormat::Json) => println!("{}", statistics.json()),
+            Some(StatsFormat::Text) => print!("{}", statistics.text()),
+            None => {}
+        }
+    }
+
+    fn summary(&self, statistics: &Statistics<'_>) {
+        let film = &statistics.rendered.film;
+        let files: Vec<_> = self
+            .outputs
+            .iter()
+            .map(|path| path.display().to_string())
+            .collect();
+        let seconds = statistics.rendered.report.elapsed.as_secs_f64();
+        eprintln!(
+            "{}: {} samples per pixel in {seconds:.2} s",
+            files.join(", "),
+            film.samples()
+        );
+        if let Some(error) = film.error() {
+            // Relative RMS error; it halves in four times the time.
+            let (error, ci) = (error.relmse, error.ci95);
+            eprintln!(
+                "relative mean squared error {error:.2e} ± {ci:.1e}; a quarter of it: 4.0× the time, {:.0} s",
+                4.0 * seconds
+            );
+        }
+        if film.invalid_samples() > 0 {
+            eprintln!(
+                "warning: {} samples were not finite and counted as black; please report this",
+                film.invalid_samples()
+            );
+        }
+        if self.stop.load(Ordering::Relaxed) {
+            eprintln!("stopped; the image is what there was by then");
+        }
+    }
+}
+
+/// Set by Ctrl-C, after which the pass under way is finished and the image is written. A second Ctrl-C ends the program.
+fn stop_on_interrupt() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        eprintln!("\nstopping after this pass; Ctrl-C again to end at once");
+    })
+    .context("listening for Ctrl-C")?;
+    Ok(stop)
+}
+
+fn progress_bar(args: &RenderArgs, options: &RenderOptions) -> ProgressBar {
+    if args.quiet {
+        return ProgressBar::hidden();
+    }
+    // By samples where their number is known, else by milliseconds of the time limit.
+    let length = match (options.samples, options.time) {
+        (Some(samples), _) => u64::from(samples),
+        (None, Some(time)) => time.as_millis() as u64,
+        (None, None) => 0,
+    };
+    let style =
+        ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {elapsed} gone, {eta} left");
+    ProgressBar::new(length).with_style(style.expect("the template is valid"))
+}
