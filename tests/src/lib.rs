@@ -7,6 +7,7 @@ pub mod fixtures;
 mod parts;
 pub mod pictures;
 mod setup;
+pub mod tiny;
 
 pub use parts::Parts;
 pub use setup::{Look, Prepared, read_scene};
