@@ -4,6 +4,7 @@
 //! film. Tests of the command line run it as a process.
 
 pub mod fixtures;
+pub mod library;
 mod parts;
 pub mod pictures;
 mod setup;
