@@ -84,6 +84,8 @@ fn five_hundred_materials_of_three_kinds_are_three_programs() {
 fn an_edited_colour_compiles_nothing() {
     let scene = wall();
     let plan = planned(&scene, Binding::Structure);
+    // Nobody waits for a renderer of hundreds of programs.
+    assert!(plan.structure.programs.len() < 10);
     let text = rust::module(&plan, "Eight");
     let renderer = xtask::compile::compile(&plan, LaneCount::Eight).unwrap();
     let before = interpreted(&plan).image();

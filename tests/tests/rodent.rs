@@ -4,10 +4,11 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use glam::Vec3;
 use residual_device_cpu::LaneCount;
 use residual_render::domain::Buffer;
 use residual_render::light::RECORD;
-use residual_scenegen::desc::{SceneDesc, SurfaceDesc, Texels};
+use residual_scenegen::desc::{LightDesc, LightKind, SceneDesc, SurfaceDesc, Texels};
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::emit::{rust, wgsl_module};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
@@ -71,13 +72,19 @@ fn run(folder: &Path, args: &[&str]) -> Output {
 #[test]
 fn specular_maps_colour_the_highlight_only() {
     let folder = folder("Kd 0.5 0.5 0.5\nKs 1 1 1\nNs 1\nillum 2\nmap_Ks red.png\n");
-    let scene = read(&folder);
+    let mut scene = read(&folder);
     let SurfaceDesc::Phong(surface) = &scene.materials[0].surface else {
         panic!("{:?}", scene.materials[0]);
     };
     assert!(surface.diffuse.texture.is_none());
     assert!(surface.specular.texture.is_some());
-    // Under the white sky: green and blue are the diffuse half, red is more.
+    // Before a black sky: green and blue are the diffuse half, red is more.
+    let position = Vec3::new(0.0, 0.0, 3.0);
+    scene.lights.push(LightDesc {
+        name: "lamp".to_owned(),
+        kind: LightKind::Point { position },
+        intensity: [5.0; 3],
+    });
     let [r, g, b] = shown(&planned(&scene, Binding::Structure));
     assert!(r > 1.2 * g && g == b && g > 0.0, "{r} {g} {b}");
 }
