@@ -38,7 +38,7 @@ pub fn metallic_roughness(base: [f32; 3], metallic: f32, roughness: f32) -> Meta
 }
 
 /// Smooth clear glass.
-fn glass(solid: bool) -> MetallicRoughness {
+pub fn glass(solid: bool) -> MetallicRoughness {
     MetallicRoughness {
         transmission: scalar(1.0),
         solid,
@@ -188,7 +188,7 @@ impl Builder {
     }
 
     /// Adds a coloured image of bytes, all texels different; its alpha takes all values.
-    fn bytes(&mut self, width: u32, height: u32) -> usize {
+    pub fn bytes(&mut self, width: u32, height: u32) -> usize {
         let texel = |i: u32| {
             let x = i.wrapping_mul(2_654_435_761) >> 7;
             [
@@ -206,7 +206,7 @@ impl Builder {
     }
 
     /// Adds an image of floating-point numbers, brighter at the top.
-    fn floats(&mut self, width: u32, height: u32) -> usize {
+    pub fn floats(&mut self, width: u32, height: u32) -> usize {
         let texel = |i: u32| {
             let (x, y) = (i % width, i / width);
             let up = 1.0 - y as f32 / height as f32;
@@ -231,7 +231,7 @@ impl Builder {
     }
 
     /// Adds a texture.
-    fn texture(&mut self, image: usize, wrap: [Wrap; 2], filter: Filter) -> TextureUse {
+    pub fn texture(&mut self, image: usize, wrap: [Wrap; 2], filter: Filter) -> TextureUse {
         self.scene.textures.push(TextureDesc {
             image,
             wrap,

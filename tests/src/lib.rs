@@ -4,9 +4,11 @@
 //! film. Tests of the command line run it as a process.
 
 pub mod fixtures;
+pub mod library;
 mod parts;
 pub mod pictures;
 mod setup;
+pub mod tiny;
 
 pub use parts::Parts;
 pub use setup::{Look, Prepared, read_scene};

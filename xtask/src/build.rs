@@ -40,6 +40,7 @@ pub(crate) fn run(args: &BuildArgs) -> Result<()> {
         package: "residual-standalone",
         source: &source,
         file: &format!("residual-standalone{}", std::env::consts::EXE_SUFFIX),
+        flags: &["-Cstrip=symbols"],
         rustflags: flags.as_deref(),
         target_directory: &target_directory,
     };

@@ -30,6 +30,48 @@ pub fn compile(plan: &Plan, lanes: LaneCount) -> Result<LoadedRenderer> {
     Ok(Compiler::default().compile(plan, lanes)?.0)
 }
 
+/// Compiles the renderer of a plan as [`compile`] does, but with line tables, into a file: for those who want to see
+/// what is in it.
+///
+/// # Errors
+/// If there is no cargo, or it fails.
+pub fn compile_with_line_tables(plan: &Plan, lanes: LaneCount, place: &Path) -> Result<()> {
+    let (source, file) = (library_source(plan, lanes), library_name());
+    let target = workspace::target_directory();
+    let build = library(&source, &file, &target, &["-Cdebuginfo=line-tables-only"]);
+    Compiler::default().build(&build, |library| {
+        fs::copy(library, place).with_context(|| format!("writing {}", place.display()))?;
+        Ok(())
+    })
+}
+
+/// What the library of a plan is compiled from.
+fn library_source(plan: &Plan, lanes: LaneCount) -> String {
+    let module = rust::module(plan, &lanes_name(lanes));
+    format!("{module}\nresidual_device_cpu::export_renderer!();\n")
+}
+
+fn library_name() -> String {
+    use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+    format!("{DLL_PREFIX}residual_compiled_scene{DLL_SUFFIX}")
+}
+
+fn library<'a>(
+    source: &'a str,
+    file: &'a str,
+    target_directory: &'a Path,
+    flags: &'a [&'a str],
+) -> Build<'a> {
+    Build {
+        package: "residual-compiled-scene",
+        source,
+        file,
+        flags,
+        rustflags: None,
+        target_directory,
+    }
+}
+
 /// Where a compiled renderer came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
@@ -58,7 +100,9 @@ pub(crate) struct Build<'a> {
     pub(crate) source: &'a str,
     /// What cargo makes of it.
     pub(crate) file: &'a str,
-    /// Compiler flags instead of the workspace's.
+    /// Compiler flags for the package itself.
+    pub(crate) flags: &'a [&'a str],
+    /// Compiler flags for all packages, instead of the workspace's.
     pub(crate) rustflags: Option<&'a str>,
     pub(crate) target_directory: &'a Path,
 }
@@ -69,8 +113,8 @@ impl Compiler {
         plan: &Plan,
         lanes: LaneCount,
     ) -> Result<(LoadedRenderer, Origin)> {
-        let mut source = rust::module(plan, &lanes_name(lanes));
-        source.push_str("\nresidual_device_cpu::export_renderer!();\n");
+        let source = library_source(plan, lanes);
+        let (file, target) = (library_name(), workspace::target_directory());
         let compile = || -> Result<_> {
             let cache = Cache::open();
             let key = Cache::key(&source)?;
@@ -80,18 +124,7 @@ impl Compiler {
                     return Ok((renderer, Origin::Cached));
                 }
             }
-            let file = format!(
-                "{}residual_compiled_scene{}",
-                std::env::consts::DLL_PREFIX,
-                std::env::consts::DLL_SUFFIX
-            );
-            let build = Build {
-                package: "residual-compiled-scene",
-                source: &source,
-                file: &file,
-                rustflags: None,
-                target_directory: &workspace::target_directory(),
-            };
+            let build = library(&source, &file, &target, &["-Cstrip=debuginfo"]);
             let library = self.build(&build, |library| cache.keep(&key, &source, library))?;
             Ok((load(&library, lanes)?, Origin::Compiled))
         };
@@ -141,8 +174,8 @@ impl Compiler {
             .arg(build.package)
             .arg("--target-dir")
             .arg(build.target_directory)
-            // Without it, 13 MiB of line tables come with every library.
-            .args(["--", "-Cstrip=debuginfo"]);
+            .arg("--")
+            .args(build.flags);
         self.run(command)
             .with_context(|| format!("running {}", cargo.display()))?;
         take(&build.target_directory.join("release").join(build.file))

@@ -1,0 +1,549 @@
+//! Tiny scenes, each with one thing that the plainest has not: what is emitted for them is kept in `golden/`.
+
+use glam::{Vec2, Vec3, Vec4};
+use residual_render::sampler::AnySampler;
+use residual_scenegen::desc::{
+    AlphaMode, ColorInput, EnvironmentDesc, Filter, LightKind, MaterialDesc, MeshDesc,
+    MetallicRoughness, NormalMap, Phong, Projection, ScalarInput, SceneDesc, SurfaceDesc,
+    TextureUse, Wrap,
+};
+use residual_scenegen::effects::Effect;
+use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
+
+use crate::fixtures::{
+    Builder, color, glass, material, matte, metallic_roughness, scalar, sheet, sphere,
+};
+
+/// A scene and what is special about it.
+pub struct Tiny {
+    /// A name for files and modules.
+    pub name: &'static str,
+    /// The scene.
+    pub scene: SceneDesc,
+    /// How it is planned.
+    pub options: PlanOptions,
+    /// The effects that the plainest of the scenes has not.
+    pub adds: Vec<Effect>,
+    /// The effects that only the plainest has.
+    pub lacks: Vec<Effect>,
+}
+
+impl Tiny {
+    fn new(name: &'static str, adds: &[Effect], lacks: &[Effect], scene: SceneDesc) -> Self {
+        Self {
+            name,
+            scene: SceneDesc {
+                name: name.to_owned(),
+                ..scene
+            },
+            options: PlanOptions {
+                size: SIZE,
+                ..PlanOptions::default()
+            },
+            adds: adds.to_vec(),
+            lacks: lacks.to_vec(),
+        }
+    }
+
+    /// The plan.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn plan(&self) -> Plan {
+        plan(&self.scene, &self.options).expect("tiny scenes can be planned")
+    }
+}
+
+/// Of all pictures: not a multiple of the lanes.
+pub const SIZE: [u32; 2] = [21, 15];
+
+/// A corner of two sheets.
+fn corner() -> [MeshDesc; 2] {
+    [
+        sheet([-1.0, -0.8, 0.0], [2.0, 0.0, 0.0], [0.0, 1.6, 0.0]),
+        sheet([-1.0, -0.8, 1.5], [2.0, 0.0, 0.0], [0.0, 0.0, -1.5]),
+    ]
+}
+
+fn lamp(b: &mut Builder) {
+    let position = Vec3::new(0.4, 0.6, 1.2);
+    b.light(LightKind::Point { position }, [3.0, 2.5, 2.0]);
+}
+
+fn camera(b: &mut Builder, projection: Projection) {
+    b.camera("camera", [0.2, 0.3, 3.5], [0.0, -0.1, 0.0], projection);
+}
+
+const PERSPECTIVE: Projection = Projection::Perspective { yfov: 0.5 };
+
+fn finish(mut b: Builder) -> SceneDesc {
+    camera(&mut b, PERSPECTIVE);
+    b.finish()
+}
+
+/// Meshes of one material under a point light.
+fn scene(material: MaterialDesc, meshes: impl IntoIterator<Item = MeshDesc>) -> SceneDesc {
+    let mut b = Builder::new("");
+    b.add(material, meshes);
+    lamp(&mut b);
+    finish(b)
+}
+
+fn surface(name: &str, surface: MetallicRoughness) -> MaterialDesc {
+    material(name, SurfaceDesc::MetallicRoughness(surface))
+}
+
+fn gray() -> MaterialDesc {
+    material("gray", matte([0.5; 3]))
+}
+
+/// The plainest scene under other lights.
+fn lit(add: impl FnOnce(&mut Builder)) -> SceneDesc {
+    let mut b = Builder::new("");
+    b.add(gray(), corner());
+    add(&mut b);
+    finish(b)
+}
+
+/// Two sheets whose material is made of a texture.
+fn textured(
+    floats: bool,
+    wrap: [Wrap; 2],
+    filter: Filter,
+    material: impl FnOnce(TextureUse) -> MaterialDesc,
+) -> SceneDesc {
+    let mut b = Builder::new("");
+    let image = if floats {
+        b.floats(5, 3)
+    } else {
+        b.bytes(5, 3)
+    };
+    let texture = b.texture(image, wrap, filter);
+    // Coordinates beyond the image, so that it matters how it goes on.
+    let meshes = corner().map(|mut mesh| {
+        for uv in mesh.uvs[0].iter_mut().flatten() {
+            *uv = *uv * 2.5 - 0.6;
+        }
+        mesh.uvs[1] = mesh.uvs[0]
+            .as_ref()
+            .map(|uvs| uvs.iter().map(|uv| Vec2::new(uv.y, uv.x)).collect());
+        mesh.colors = None;
+        mesh
+    });
+    b.add(material(texture), meshes);
+    lamp(&mut b);
+    finish(b)
+}
+
+/// A Lambertian surface whose albedo is a texture.
+fn printed(texture: TextureUse) -> MaterialDesc {
+    let diffuse = ColorInput {
+        factor: [1.0; 3],
+        texture: Some(texture),
+    };
+    material(
+        "printed",
+        SurfaceDesc::Phong(Phong {
+            diffuse,
+            specular: color([0.0; 3]),
+            exponent: scalar(0.0),
+        }),
+    )
+}
+
+/// A Lambertian surface whose alpha is a texture.
+fn cut_out(texture: TextureUse, alpha_mode: AlphaMode) -> MaterialDesc {
+    MaterialDesc {
+        alpha_mode,
+        alpha: ScalarInput {
+            factor: 0.9,
+            texture: Some((texture, 3)),
+        },
+        ..gray()
+    }
+}
+
+const REPEAT: [Wrap; 2] = [Wrap::Repeat; 2];
+const TEXTURE: [Effect; 3] = [Effect::Textures, Effect::BilinearFilter, Effect::RepeatWrap];
+const SRGB: [Effect; 4] = [
+    Effect::Textures,
+    Effect::BilinearFilter,
+    Effect::RepeatWrap,
+    Effect::SrgbTexels,
+];
+
+/// The plainest scene: a matte surface, a point light.
+pub fn plain() -> Tiny {
+    Tiny::new("matte", &[], &[], scene(gray(), corner()))
+}
+
+/// All tiny scenes.
+pub fn all() -> Vec<Tiny> {
+    [
+        surfaces(),
+        textures(),
+        attributes(),
+        alphas(),
+        lights(),
+        views(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn surfaces() -> Vec<Tiny> {
+    let diffuse = [Effect::DiffuseReflection];
+    let phong = |diffuse| {
+        SurfaceDesc::Phong(Phong {
+            diffuse: color(diffuse),
+            specular: color([0.4, 0.3, 0.2]),
+            exponent: scalar(20.0),
+        })
+    };
+    let ball = || [sphere([0.0, 0.0, 0.2], 0.7)];
+    let [wall, floor] = corner();
+    vec![
+        plain(),
+        Tiny::new(
+            "metal",
+            &[Effect::MetallicReflection],
+            &diffuse,
+            scene(
+                surface("brass", metallic_roughness([0.9, 0.7, 0.3], 1.0, 0.6)),
+                corner(),
+            ),
+        ),
+        Tiny::new(
+            "glossy_coat",
+            &[Effect::GlossyCoat],
+            &[],
+            scene(
+                surface("varnish", metallic_roughness([0.5, 0.3, 0.2], 0.0, 0.3)),
+                corner(),
+            ),
+        ),
+        Tiny::new(
+            "mixed_metal",
+            &[
+                Effect::GlossyCoat,
+                Effect::MetallicReflection,
+                Effect::MixedLobes,
+            ],
+            &[],
+            scene(
+                surface("worn", metallic_roughness([0.6, 0.5, 0.4], 0.5, 0.5)),
+                corner(),
+            ),
+        ),
+        Tiny::new("thin_glass", &[Effect::ThinTransmission], &[], {
+            let pane = sheet([-0.6, -0.5, 0.8], [1.1, 0.0, 0.2], [0.0, 0.9, 0.0]);
+            behind(surface("pane", glass(false)), [pane])
+        }),
+        Tiny::new(
+            "solid_glass",
+            &[Effect::Refraction, Effect::SmoothNormals],
+            &[],
+            behind(surface("ball", glass(true)), ball()),
+        ),
+        Tiny::new(
+            "phong",
+            &[Effect::PhongReflection],
+            &diffuse,
+            scene(material("sheen", phong([0.0; 3])), corner()),
+        ),
+        Tiny::new(
+            "diffuse_and_phong",
+            &[Effect::PhongReflection, Effect::MixedLobes],
+            &[],
+            scene(material("plastic", phong([0.2, 0.4, 0.3])), corner()),
+        ),
+        Tiny::new(
+            "culling",
+            &[Effect::BackFaceCulling],
+            &[],
+            scene(
+                MaterialDesc {
+                    double_sided: false,
+                    ..gray()
+                },
+                // The sheet above the floor is not seen from the light.
+                [
+                    wall,
+                    floor,
+                    sheet([-1.0, 0.3, 0.0], [0.8, 0.0, 0.0], [0.0, 0.0, 1.5]),
+                ],
+            ),
+        ),
+    ]
+}
+
+/// Meshes before two grey sheets.
+fn behind(material: MaterialDesc, meshes: impl IntoIterator<Item = MeshDesc>) -> SceneDesc {
+    let mut b = Builder::new("");
+    b.add(gray(), corner());
+    b.add(material, meshes);
+    lamp(&mut b);
+    finish(b)
+}
+
+fn textures() -> Vec<Tiny> {
+    let linear = Filter::Linear;
+    let with = |change: fn(&mut TextureUse)| {
+        textured(false, REPEAT, linear, move |mut texture| {
+            change(&mut texture);
+            printed(texture)
+        })
+    };
+    let and = |effect| [&SRGB[..], &[effect]].concat();
+    let instead = |out: Effect, effect| -> Vec<_> {
+        let swap = |e: &Effect| if *e == out { effect } else { *e };
+        SRGB.iter().map(swap).collect()
+    };
+    let wrapped = |wrap| textured(false, [wrap; 2], linear, printed);
+    vec![
+        Tiny::new("texture", &SRGB, &[], with(|_| {})),
+        Tiny::new(
+            "nearest_filter",
+            &instead(Effect::BilinearFilter, Effect::NearestFilter),
+            &[],
+            textured(false, REPEAT, Filter::Nearest, printed),
+        ),
+        Tiny::new(
+            "mirror_wrap",
+            &instead(Effect::RepeatWrap, Effect::MirrorWrap),
+            &[],
+            wrapped(Wrap::Mirror),
+        ),
+        Tiny::new(
+            "clamp_wrap",
+            &instead(Effect::RepeatWrap, Effect::ClampWrap),
+            &[],
+            wrapped(Wrap::Clamp),
+        ),
+        Tiny::new(
+            "float_texels",
+            &instead(Effect::SrgbTexels, Effect::FloatTexels),
+            &[],
+            textured(true, REPEAT, linear, printed),
+        ),
+        Tiny::new(
+            "linear_texels",
+            &[&TEXTURE[..], &[Effect::LinearTexels, Effect::GlossyCoat]].concat(),
+            &[],
+            textured(false, REPEAT, linear, |texture| {
+                surface(
+                    "smears",
+                    MetallicRoughness {
+                        roughness: ScalarInput {
+                            factor: 0.8,
+                            texture: Some((texture, 1)),
+                        },
+                        ..metallic_roughness([0.5; 3], 0.0, 1.0)
+                    },
+                )
+            }),
+        ),
+        Tiny::new(
+            "texture_transform",
+            &and(Effect::TextureTransforms),
+            &[],
+            with(|texture| texture.transform = Some([[0.6, 0.3, 0.1], [-0.2, 0.7, 0.4]])),
+        ),
+        Tiny::new(
+            "second_uv_set",
+            &and(Effect::SecondUvSet),
+            &[],
+            with(|texture| texture.uv_set = 1),
+        ),
+    ]
+}
+
+fn attributes() -> Vec<Tiny> {
+    let colors = vec![
+        Vec4::new(1.0, 0.2, 0.3, 1.0),
+        Vec4::new(0.2, 0.9, 0.3, 1.0),
+        Vec4::new(0.1, 0.2, 1.0, 1.0),
+        Vec4::ONE,
+    ];
+    let tangents = vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 4];
+    vec![
+        Tiny::new(
+            "smooth_normals",
+            &[Effect::SmoothNormals],
+            &[],
+            scene(gray(), [sphere([0.0, 0.0, 0.2], 0.7)]),
+        ),
+        Tiny::new(
+            "vertex_colors",
+            &[Effect::VertexColors],
+            &[],
+            scene(
+                gray(),
+                corner().map(|mesh| MeshDesc {
+                    colors: Some(colors.clone()),
+                    ..mesh
+                }),
+            ),
+        ),
+        Tiny::new(
+            "normal_map",
+            &[&TEXTURE[..], &[Effect::LinearTexels, Effect::NormalMaps]].concat(),
+            &[],
+            {
+                let mut scene = textured(false, REPEAT, Filter::Linear, |texture| MaterialDesc {
+                    normal_map: Some(NormalMap {
+                        texture,
+                        scale: 0.5,
+                    }),
+                    ..gray()
+                });
+                for mesh in &mut scene.meshes {
+                    mesh.tangents = Some(tangents.clone());
+                }
+                scene
+            },
+        ),
+    ]
+}
+
+fn alphas() -> Vec<Tiny> {
+    let reads = [&TEXTURE[..], &[Effect::LinearTexels]].concat();
+    let cut = |mode| textured(false, REPEAT, Filter::Linear, move |t| cut_out(t, mode));
+    vec![
+        Tiny::new(
+            "alpha_mask",
+            &[&reads[..], &[Effect::AlphaMasks]].concat(),
+            &[],
+            cut(AlphaMode::Mask(0.4)),
+        ),
+        Tiny::new(
+            "alpha_blending",
+            &[&reads[..], &[Effect::AlphaBlending]].concat(),
+            &[],
+            cut(AlphaMode::Blend),
+        ),
+    ]
+}
+
+fn lights() -> Vec<Tiny> {
+    let point = [Effect::PointLights];
+    let glowing = |emission| {
+        let lamp = MaterialDesc {
+            emission,
+            ..material("lamp", matte([0.0; 3]))
+        };
+        move |b: &mut Builder| {
+            b.add(
+                lamp,
+                [sheet([-0.4, 0.7, 0.9], [0.8, 0.0, 0.0], [0.0, 0.0, 0.6])],
+            );
+        }
+    };
+    let position = Vec3::new(0.4, 0.6, 1.2);
+    let direction = Vec3::new(-0.3, -0.6, -0.8).normalize();
+    vec![
+        Tiny::new(
+            "emission",
+            &[Effect::EmittingSurfaces],
+            &point,
+            lit(glowing(color([6.0, 5.0, 4.0]))),
+        ),
+        Tiny::new(
+            "textured_emission",
+            &[
+                &SRGB[..],
+                &[Effect::EmittingSurfaces, Effect::TexturedEmission],
+            ]
+            .concat(),
+            &point,
+            lit(|b| {
+                let image = b.bytes(5, 3);
+                let texture = Some(b.texture(image, REPEAT, Filter::Linear));
+                let factor = [8.0; 3];
+                glowing(ColorInput { factor, texture })(b);
+            }),
+        ),
+        Tiny::new(
+            "spot_light",
+            &[Effect::SpotLights],
+            &point,
+            lit(|b| {
+                let kind = LightKind::Spot {
+                    position,
+                    direction,
+                    inner: 0.4,
+                    outer: 0.7,
+                };
+                b.light(kind, [3.0, 2.5, 2.0]);
+            }),
+        ),
+        Tiny::new(
+            "directional_light",
+            &[Effect::DirectionalLights],
+            &point,
+            lit(|b| b.light(LightKind::Directional { direction }, [1.0, 0.9, 0.8])),
+        ),
+        Tiny::new("environment", &[Effect::Environment], &point, {
+            let mut image = 0;
+            let mut scene = lit(|b| image = b.floats(8, 4));
+            scene.environment = Some(EnvironmentDesc {
+                image,
+                strength: 0.8,
+                rotation: 0.7,
+            });
+            scene
+        }),
+    ]
+}
+
+fn views() -> Vec<Tiny> {
+    let orthographic = {
+        let mut b = Builder::new("");
+        b.add(gray(), corner());
+        lamp(&mut b);
+        camera(&mut b, Projection::Orthographic { ymag: 0.9 });
+        b.finish()
+    };
+    let named = |name: &str| {
+        let gray = MaterialDesc {
+            name: name.to_owned(),
+            ..gray()
+        };
+        scene(gray, corner())
+    };
+    let constants = scene(
+        surface(
+            "thirds",
+            metallic_roughness([1.0 / 3.0, 2e-7, 0.1], 0.0, 0.7),
+        ),
+        corner(),
+    );
+    let plain_options = |tiny: Tiny, change: fn(&mut PlanOptions)| {
+        let mut tiny = tiny;
+        change(&mut tiny.options);
+        tiny
+    };
+    vec![
+        Tiny::new(
+            "orthographic_camera",
+            &[Effect::OrthographicCamera],
+            &[Effect::PerspectiveCamera],
+            orthographic,
+        ),
+        plain_options(
+            Tiny::new("constants", &[Effect::GlossyCoat], &[], constants),
+            |options| options.binding = Binding::Constants,
+        ),
+        plain_options(
+            Tiny::new("independent_sampler", &[], &[], named("gray")),
+            |options| options.sampler = AnySampler::Independent,
+        ),
+        Tiny::new(
+            "odd_names",
+            &[],
+            &[],
+            named("a\nb\r*/ \"c\" \u{2028}\u{202e}{} \\"),
+        ),
+    ]
+}

@@ -1,0 +1,226 @@
+//! What a scene does not call for is not in its renderer: neither in the emitted text, nor as a symbol, nor as a single
+//! instruction, inlined ones included.
+//!
+//! The same look at scenes that do call for something finds it: otherwise it would say nothing.
+#![cfg(target_os = "linux")]
+
+use std::path::Path;
+
+use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::effects::{Effect, Effects};
+use residual_scenegen::emit::rust;
+use residual_scenegen::plan::{Plan, PlanOptions, plan};
+use residual_tests::library::Library;
+use residual_tests::{fixtures, read_scene, scenes, tiny};
+
+/// What emitted texts contain, and the effects that alone call for it.
+const WORDS: &[(&str, &[Effect])] = &[
+    ("TEXTURE_", &[Effect::Textures]),
+    ("Image<", &[Effect::Textures]),
+    ("Nearest", &[Effect::NearestFilter]),
+    ("Bilinear", &[Effect::BilinearFilter]),
+    ("Repeat", &[Effect::RepeatWrap]),
+    ("Mirror", &[Effect::MirrorWrap]),
+    ("Clamp", &[Effect::ClampWrap]),
+    ("SrgbRgba8", &[Effect::SrgbTexels]),
+    ("LinearRgba8", &[Effect::LinearTexels]),
+    ("LinearFloat", &[Effect::FloatTexels]),
+    ("transform: Some", &[Effect::TextureTransforms]),
+    ("set: 1", &[Effect::SecondUvSet]),
+    ("VertexColor", &[Effect::VertexColors]),
+    ("normals: true", &[Effect::SmoothNormals]),
+    ("decode_normal", &[Effect::NormalMaps]),
+    ("has_alpha", &[Effect::AlphaMasks, Effect::AlphaBlending]),
+    ("is_there", &[Effect::AlphaMasks, Effect::AlphaBlending]),
+    ("AlphaTest::Mask", &[Effect::AlphaMasks]),
+    ("Blend", &[Effect::AlphaBlending]),
+    ("Glossy {", &[Effect::GlossyCoat]),
+    ("Conductor {", &[Effect::MetallicReflection]),
+    ("Phong {", &[Effect::PhongReflection]),
+    (
+        "Dielectric",
+        &[Effect::Refraction, Effect::ThinTransmission],
+    ),
+    ("Thin", &[Effect::ThinTransmission]),
+    ("Solid", &[Effect::Refraction]),
+    ("Area<", &[Effect::EmittingSurfaces]),
+    ("emission: Some", &[Effect::EmittingSurfaces]),
+    ("(Point, ", &[Effect::PointLights]),
+    ("(Spot, ", &[Effect::SpotLights]),
+    ("(Directional, ", &[Effect::DirectionalLights]),
+    ("(Environment, ", &[Effect::Environment]),
+    ("Perspective", &[Effect::PerspectiveCamera]),
+    ("Orthographic", &[Effect::OrthographicCamera]),
+];
+
+/// Source files of renderers, and the effects that alone call for them.
+const SOURCES: &[(&str, &[Effect])] = &[
+    // Environments are images, too.
+    (
+        "render/src/texture/image.rs",
+        &[Effect::Textures, Effect::Environment],
+    ),
+    ("render/src/light/environment.rs", &[Effect::Environment]),
+    (
+        "render/src/bsdf/dielectric.rs",
+        &[Effect::Refraction, Effect::ThinTransmission],
+    ),
+    (
+        "render/src/alpha.rs",
+        &[Effect::AlphaMasks, Effect::AlphaBlending],
+    ),
+    ("render/src/bsdf/glossy.rs", &[Effect::GlossyCoat]),
+    (
+        "render/src/bsdf/microfacet.rs",
+        &[Effect::GlossyCoat, Effect::MetallicReflection],
+    ),
+    ("render/src/bsdf/phong.rs", &[Effect::PhongReflection]),
+    ("render/src/bsdf/combine.rs", &[Effect::MixedLobes]),
+    ("render/src/light/area.rs", &[Effect::EmittingSurfaces]),
+    (
+        "render/src/light/punctual.rs",
+        &[
+            Effect::PointLights,
+            Effect::SpotLights,
+            Effect::DirectionalLights,
+        ],
+    ),
+];
+
+/// Files that every renderer may contain.
+const COMMON: &[&str] = &[
+    "bvh/src/ray.rs",
+    "device-cpu/src/",
+    "render/src/bsdf/diffuse.rs",
+    "render/src/bsdf/mod.rs",
+    "render/src/camera.rs",
+    "render/src/domain/",
+    "render/src/light/mod.rs",
+    "render/src/material.rs",
+    "render/src/math/",
+    "render/src/sampler/",
+    "render/src/surface.rs",
+    // Constants and parameters.
+    "render/src/texture/mod.rs",
+    "render/src/tracer/",
+];
+
+fn planned(scene: &SceneDesc) -> Plan {
+    plan(scene, &PlanOptions::default()).unwrap()
+}
+
+fn check_text(plan: &Plan) {
+    let effects = Effects::of(plan);
+    let text = rust::module(plan, "Eight");
+    for (word, callers) in WORDS {
+        let wanted = callers
+            .iter()
+            .any(|effect| !effects.reasons(*effect).is_empty());
+        assert_eq!(text.contains(word), wanted, "{}: {word}", plan.name);
+    }
+}
+
+/// Compiles a renderer and looks where its instructions come from.
+fn check_instructions(plan: &Plan, name: &str) -> Library {
+    let effects = Effects::of(plan);
+    let library = Library::compile(plan);
+    println!(
+        "{name}: {} bytes of instructions, {} in functions of the project, {} of them from known places",
+        library.size, library.own, library.known
+    );
+    assert!(
+        library.own > 10_000 && library.known == library.own,
+        "{name}"
+    );
+    for (file, callers) in SOURCES {
+        let wanted = callers
+            .iter()
+            .any(|effect| !effects.reasons(*effect).is_empty());
+        let bytes = library.bytes_of(file);
+        println!("    {file}: {bytes}");
+        assert_eq!(bytes > 0, wanted, "{name}: {bytes} bytes from {file}");
+    }
+    for (file, bytes) in library.sources() {
+        let common = COMMON.iter().any(|start| file.starts_with(start));
+        let listed = SOURCES.iter().any(|(other, _)| *other == file);
+        assert!(common || listed, "{name}: {bytes} bytes from {file}");
+    }
+    library
+}
+
+#[test]
+fn texts_contain_what_scenes_call_for_and_nothing_else() {
+    for tiny in tiny::all() {
+        check_text(&tiny.plan());
+    }
+    for scene in [fixtures::room(), fixtures::textures(), fixtures::lights()] {
+        check_text(&planned(&scene));
+    }
+}
+
+#[test]
+fn renderers_contain_what_scenes_call_for() {
+    for (name, functions) in [
+        ("alpha_mask", &["texture::image", "is_there"][..]),
+        ("diffuse_and_phong", &["bsdf::phong", "bsdf::combine"]),
+        ("environment", &["light::environment"]),
+        ("mixed_metal", &["bsdf::microfacet", "bsdf::glossy"]),
+        ("solid_glass", &["bsdf::dielectric"]),
+    ] {
+        let tiny = tiny::all().into_iter().find(|tiny| tiny.name == name);
+        let library = check_instructions(&tiny.unwrap().plan(), name);
+        // Names tell, too: the Cornell box has none of these.
+        for part in functions {
+            assert!(NOT_IN_CORNELL.contains(part));
+            assert!(library.has_function(part), "{name}: {part}");
+        }
+    }
+}
+
+/// Parts of names of functions. Instances are the hierarchy's, which is no part of a renderer; media would be a file that
+/// is neither among [`SOURCES`] nor [`COMMON`].
+const NOT_IN_CORNELL: &[&str] = &[
+    "texture::image",
+    "is_there",
+    "light::environment",
+    "light::punctual",
+    "bsdf::dielectric",
+    "bsdf::microfacet",
+    "bsdf::glossy",
+    "bsdf::phong",
+    "bsdf::combine",
+    "decode_normal",
+    "bvh::instances",
+];
+
+fn check_cornell(scene: &SceneDesc, name: &str) {
+    let plan = planned(scene);
+    check_text(&plan);
+    let effects: Vec<_> = Effects::of(&plan).iter().collect();
+    let expected = [
+        Effect::DiffuseReflection,
+        Effect::BackFaceCulling,
+        Effect::EmittingSurfaces,
+        Effect::PerspectiveCamera,
+    ];
+    assert_eq!(effects, expected);
+    let library = check_instructions(&plan, name);
+    assert!(library.has_function("bsdf::diffuse"));
+    for part in NOT_IN_CORNELL {
+        assert!(!library.has_function(part), "{name}: {part}");
+    }
+}
+
+#[test]
+fn cornell_box() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let scene = read_scene(&scenes.join("cornell-box.gltf"), None);
+    check_cornell(&scene.unwrap(), "cornell_box");
+}
+
+#[test]
+fn shared_cornell_box() {
+    let Some(scenes) = scenes() else { return };
+    let scene = read_scene(&scenes.join("interiors/cornell-generated.glb"), None);
+    check_cornell(&scene.unwrap(), "cornell_generated");
+}

@@ -1,0 +1,397 @@
+//! A renderer that could do more than its scene calls for gives the same bits (hard case N-07); and what a scene calls
+//! for depends on whether it matters, not on how it is written down.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+use residual_device_cpu::{Interpreter, LaneCount};
+use residual_render::domain::Buffer;
+use residual_render::program::{LightNode, Structure};
+use residual_render::scene_data::SceneData;
+use residual_scenegen::desc::{
+    AlphaMode, ColorInput, EnvironmentDesc, Filter, ImageDesc, LightDesc, LightKind, MaterialDesc,
+    NormalMap, Phong, ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
+};
+use residual_scenegen::effects::{Effect, Effects};
+use residual_scenegen::plan::{LightKindUse, MaterialUse, Plan, PlanOptions, plan};
+use residual_tests::fixtures::{
+    Builder, color, material, matte, metallic_roughness, scalar, sheet,
+};
+use residual_tests::pictures::first_difference;
+use residual_tests::tiny::{self, SIZE};
+use residual_tests::{Look, Prepared};
+
+/// What a renderer of a plan shows of a scene's data.
+fn picture(plan: &Plan, structure: &Structure) -> Vec<[f32; 3]> {
+    let prepared = Prepared::new(plan, LaneCount::Eight);
+    let renderer = Interpreter::new(structure.clone(), LaneCount::Eight);
+    let film = prepared.render(&renderer, &Look::new(SIZE, 8));
+    assert_eq!(film.invalid_samples(), 0);
+    film.image()
+}
+
+/// Data for an environment that is black and never picked, so that renderers can ask for it.
+fn add_black_environment(data: &mut SceneData) {
+    let bright = tiny::all()
+        .into_iter()
+        .find(|tiny| tiny.name == "environment");
+    let bright = bright.unwrap().plan().data;
+    for buffer in [Buffer::Environment, Buffer::Texels] {
+        assert!(data.buffer(buffer).is_empty());
+        data.buffer_mut(buffer).extend(bright.buffer(buffer));
+    }
+    // Its strength.
+    data.buffer_mut(Buffer::Environment)[3] = 0.0_f32.to_bits();
+}
+
+/// The plain scene's structure, with the programs and the lights of all tiny scenes: none of its triangles uses them.
+fn with_everything(plain: &Structure) -> Structure {
+    let mut structure = plain.clone();
+    for tiny in tiny::all() {
+        let other = tiny.plan().structure;
+        for program in other.programs {
+            if !structure.programs.contains(&program) {
+                structure.programs.push(program);
+            }
+        }
+        for light in other.lights {
+            if !structure.lights.contains(&light) {
+                structure.lights.push(light);
+            }
+        }
+    }
+    structure
+}
+
+#[test]
+fn what_is_not_used_changes_nothing() {
+    let plain = tiny::plain().plan();
+    let expected = picture(&plain, &plain.structure);
+    let mut seen = 0;
+    let mut same = |what: &str, plan: &Plan, structure: &Structure| {
+        assert_ne!(*structure, plain.structure, "{what}");
+        let image = picture(plan, structure);
+        assert_eq!(first_difference(&expected, &image), None, "{what}");
+        seen += 1;
+    };
+    for tiny in tiny::all() {
+        let other = tiny.plan();
+        let mut structure = plain.structure.clone();
+        let new = |program: &&_| !plain.structure.programs.contains(program);
+        structure
+            .programs
+            .extend(other.structure.programs.iter().filter(new).cloned());
+        if structure != plain.structure {
+            same(
+                &format!("the programs of {}", tiny.name),
+                &plain,
+                &structure,
+            );
+        }
+        for light in other.structure.lights {
+            if !plain.structure.lights.contains(&light) && light != LightNode::Environment {
+                let mut structure = plain.structure.clone();
+                structure.lights.push(light);
+                same(&format!("the lights of {}", tiny.name), &plain, &structure);
+            }
+        }
+    }
+    // Sides are a question to the hierarchy.
+    let mut sided = plain.clone();
+    sided.data.single_sided = vec![false; sided.data.triangle_count()];
+    assert_eq!(
+        first_difference(&expected, &picture(&sided, &plain.structure)),
+        None
+    );
+    let mut dark = plain.clone();
+    add_black_environment(&mut dark.data);
+    let mut structure = plain.structure.clone();
+    structure.lights.push(LightNode::Environment);
+    same("a black environment", &dark, &structure);
+    assert!(seen > 20, "{seen}");
+}
+
+/// The same, compiled, with everything at once.
+#[test]
+fn a_renderer_for_everything_gives_the_same_bits() {
+    let plain = tiny::plain().plan();
+    let expected = picture(&plain, &plain.structure);
+    let mut everything = plain.clone();
+    add_black_environment(&mut everything.data);
+    everything.structure = with_everything(&plain.structure);
+    let nobody = MaterialUse {
+        name: "nobody".to_owned(),
+        images: BTreeMap::new(),
+        culled: false,
+    };
+    everything.materials = vec![vec![nobody]; everything.structure.programs.len()];
+    let none = LightKindUse {
+        count: 0,
+        sources: vec!["none".to_owned()],
+    };
+    everything.lights = vec![none; everything.structure.lights.len()];
+    let effects = Effects::of(&everything);
+    // There is one camera, and one rule for sides.
+    let missing = Effect::ALL
+        .iter()
+        .filter(|effect| effects.reasons(**effect).is_empty());
+    let missing: Vec<_> = missing.collect();
+    assert_eq!(
+        missing,
+        [&Effect::BackFaceCulling, &Effect::OrthographicCamera]
+    );
+
+    let renderer = xtask::compile::compile(&everything, LaneCount::Eight).unwrap();
+    let prepared = Prepared::new(&everything, LaneCount::Eight);
+    let image = prepared.render(&renderer, &Look::new(SIZE, 8)).image();
+    assert_eq!(first_difference(&expected, &image), None);
+}
+
+/// Texels of an image of bytes that are all this, but for one.
+type Image = ([u8; 4], [u8; 4]);
+
+const BLACK: Image = ([0; 4], [0; 4]);
+const BLACK_BUT_ONE: Image = ([0; 4], [1; 4]);
+const WHITE: Image = ([255; 4], [255; 4]);
+const WHITE_BUT_ONE: Image = ([255; 4], [254; 4]);
+
+/// A sheet under a point light, of the material that `make` makes of a texture.
+fn effects(
+    (all, one): Image,
+    make: impl FnOnce(TextureUse) -> MaterialDesc,
+    change: impl FnOnce(&mut SceneDesc),
+) -> Vec<Effect> {
+    let mut b = Builder::new("sheet");
+    let image = b.bytes(5, 3);
+    let texture = b.texture(image, [Wrap::Repeat; 2], Filter::Linear);
+    let mesh = sheet([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);
+    b.add(make(texture), [mesh]);
+    let position = Vec3::new(0.0, 0.0, 2.0);
+    b.light(LightKind::Point { position }, [1.0; 3]);
+    let mut scene = b.finish();
+    let Texels::Rgba8(texels) = &mut scene.images[image].texels else {
+        unreachable!("an image of bytes");
+    };
+    texels.fill(all);
+    texels[7] = one;
+    change(&mut scene);
+    let plan = plan(&scene, &PlanOptions::default()).unwrap();
+    Effects::of(&plan).iter().collect()
+}
+
+/// Where a material has a number or a colour: how one of a factor and a texture is put there.
+type Place = fn(f32, Option<TextureUse>) -> MaterialDesc;
+
+fn number(factor: f32, texture: Option<TextureUse>) -> ScalarInput {
+    let texture = texture.map(|texture| (texture, 0));
+    ScalarInput { factor, texture }
+}
+
+fn colors(factor: f32, texture: Option<TextureUse>) -> ColorInput {
+    let factor = [factor; 3];
+    ColorInput { factor, texture }
+}
+
+const PLACES: &[(Effect, Place)] = &[
+    (Effect::MetallicReflection, |factor, texture| {
+        let mut surface = metallic_roughness([0.5; 3], 0.0, 0.5);
+        surface.metallic = number(factor, texture);
+        material("metallic", SurfaceDesc::MetallicRoughness(surface))
+    }),
+    (Effect::ThinTransmission, |factor, texture| {
+        let mut surface = metallic_roughness([0.5; 3], 0.0, 0.0);
+        surface.transmission = number(factor, texture);
+        material("transmission", SurfaceDesc::MetallicRoughness(surface))
+    }),
+    (Effect::GlossyCoat, |factor, texture| {
+        let mut surface = metallic_roughness([0.5; 3], 0.0, 0.5);
+        surface.specular = number(factor, texture);
+        material("specular", SurfaceDesc::MetallicRoughness(surface))
+    }),
+    (Effect::PhongReflection, |factor, texture| {
+        let surface = Phong {
+            diffuse: color([0.5; 3]),
+            specular: colors(factor, texture),
+            exponent: scalar(20.0),
+        };
+        material("Ks", SurfaceDesc::Phong(surface))
+    }),
+    (Effect::EmittingSurfaces, |factor, texture| MaterialDesc {
+        emission: colors(factor, texture),
+        ..material("emission", matte([0.5; 3]))
+    }),
+    (Effect::DiffuseReflection, |factor, texture| {
+        let surface = Phong {
+            diffuse: colors(factor, texture),
+            specular: color([0.5; 3]),
+            exponent: scalar(20.0),
+        };
+        material("Kd", SurfaceDesc::Phong(surface))
+    }),
+];
+
+#[test]
+fn a_factor_of_0_takes_an_effect_out_and_its_texture_with_it() {
+    for (effect, make) in PLACES {
+        for texels in [BLACK, BLACK_BUT_ONE, WHITE] {
+            let out = effects(texels, |texture| make(0.0, Some(texture)), |_| {});
+            assert!(!out.contains(effect), "{effect}: {out:?}");
+            assert!(!out.contains(&Effect::Textures), "{effect}: {out:?}");
+        }
+        let out = effects(WHITE, |_| make(0.0, None), |_| {});
+        assert!(!out.contains(effect), "{effect}: {out:?}");
+    }
+}
+
+#[test]
+fn any_other_factor_and_a_single_texel_call_for_an_effect() {
+    for (effect, make) in PLACES {
+        for factor in [f32::MIN_POSITIVE, 0.5, 1.0] {
+            let only_factor = effects(WHITE, |_| make(factor, None), |_| {});
+            assert!(only_factor.contains(effect), "{effect} by {factor}");
+            assert!(
+                !only_factor.contains(&Effect::Textures),
+                "{effect} by {factor}"
+            );
+            for texels in [BLACK_BUT_ONE, WHITE] {
+                let textured = effects(texels, |texture| make(factor, Some(texture)), |_| {});
+                assert!(textured.contains(effect), "{effect} by {factor}");
+                assert!(textured.contains(&Effect::Textures), "{effect} by {factor}");
+            }
+        }
+    }
+}
+
+/// Alpha matters where it is not enough, be it in one texel.
+#[test]
+fn a_single_texel_calls_for_alpha() {
+    let alpha = |texels, mode, factor: f32| {
+        let make = |texture| MaterialDesc {
+            alpha_mode: mode,
+            alpha: ScalarInput {
+                factor,
+                texture: Some((texture, 3)),
+            },
+            ..material("alpha", matte([0.5; 3]))
+        };
+        effects(texels, make, |_| {})
+    };
+    for (mode, effect) in [
+        (AlphaMode::Blend, Effect::AlphaBlending),
+        (AlphaMode::Mask(0.999), Effect::AlphaMasks),
+    ] {
+        for (texels, factor, wanted) in [
+            (WHITE, 1.0, false),
+            (WHITE_BUT_ONE, 1.0, true),
+            (BLACK_BUT_ONE, 1.0, true),
+            (WHITE_BUT_ONE, 0.5, true),
+        ] {
+            let found = alpha(texels, mode, factor);
+            assert_eq!(
+                found.contains(&effect),
+                wanted,
+                "{effect} {texels:?} {factor}"
+            );
+        }
+        assert!(!alpha(WHITE_BUT_ONE, AlphaMode::Opaque, 0.5).contains(&effect));
+    }
+}
+
+#[test]
+fn lights_that_do_not_shine_are_none() {
+    let direction = Vec3::NEG_Z;
+    let position = Vec3::new(0.5, 0.5, 2.0);
+    let kinds = [
+        (Effect::PointLights, LightKind::Point { position }),
+        (
+            Effect::DirectionalLights,
+            LightKind::Directional { direction },
+        ),
+        (
+            Effect::SpotLights,
+            LightKind::Spot {
+                position,
+                direction,
+                inner: 0.2,
+                outer: 0.4,
+            },
+        ),
+    ];
+    for (effect, kind) in kinds {
+        for (intensity, wanted) in [([0.0; 3], false), ([0.0, 0.0, 1e-6], true)] {
+            let found = effects(
+                WHITE,
+                |_| material("gray", matte([0.5; 3])),
+                |scene| {
+                    let light = scene.lights[0].clone();
+                    // The plain light is of another kind than the one in question.
+                    scene.lights[0].kind = match kind {
+                        LightKind::Point { .. } => LightKind::Directional { direction },
+                        _ => LightKind::Point { position },
+                    };
+                    scene.lights.push(LightDesc {
+                        kind,
+                        intensity,
+                        ..light
+                    });
+                },
+            );
+            assert_eq!(found.contains(&effect), wanted, "{effect} {intensity:?}");
+        }
+    }
+    for (strength, texel, wanted) in [
+        (0.0, 1.0, false),
+        (1.0, 0.0, false),
+        (1.0, 1e-6, true),
+        (1e-6, 1.0, true),
+    ] {
+        let found = effects(
+            WHITE,
+            |_| material("gray", matte([0.5; 3])),
+            |scene| {
+                let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; 32];
+                texels[13] = [texel, 0.0, 0.0, 1.0];
+                scene.images.push(ImageDesc {
+                    name: "sky".to_owned(),
+                    width: 8,
+                    height: 4,
+                    texels: Texels::RgbaF32(texels),
+                });
+                scene.environment = Some(EnvironmentDesc {
+                    image: scene.images.len() - 1,
+                    strength,
+                    rotation: 0.0,
+                });
+            },
+        );
+        assert_eq!(
+            found.contains(&Effect::Environment),
+            wanted,
+            "{strength} {texel}"
+        );
+    }
+}
+
+/// A normal map needs tangents to lie along; without them it is no call for anything.
+#[test]
+fn normal_maps_need_tangents() {
+    for tangents in [false, true] {
+        let found = effects(
+            WHITE,
+            |texture| MaterialDesc {
+                normal_map: Some(NormalMap {
+                    texture,
+                    scale: 1.0,
+                }),
+                ..material("bumps", matte([0.5; 3]))
+            },
+            |scene| {
+                let mesh = &mut scene.meshes[0];
+                let along = glam::Vec4::new(1.0, 0.0, 0.0, 1.0);
+                mesh.tangents = tangents.then(|| vec![along; mesh.positions.len()]);
+            },
+        );
+        assert_eq!(found.contains(&Effect::NormalMaps), tangents);
+        assert_eq!(found.contains(&Effect::Textures), tangents);
+    }
+}
