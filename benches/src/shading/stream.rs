@@ -1,8 +1,8 @@
 //! What is shaded: hits on a patch of triangles, the same for every program, and the images on it.
 //!
-//! The hits come in the order of a coherent stream: [`HITS`] of them on [`TRIANGLES`] triangles, those of sixteen
-//! neighbours on one of the eight triangles around their place, at random barycentric coordinates. The patch spans 256² of
-//! the 1024² texels of each image, so four hits fall on a texel's neighbourhood of 8 × 8; colours and numbers are noise.
+//! The hits come in the order of a coherent stream: [`HITS`] of them on [`TRIANGLES`] triangles, 32 neighbours at random
+//! places of the eight triangles around theirs. The patch spans 256² of the 1024² texels of each image, so these 32 fall on
+//! 32 × 16 texels; colours and numbers are noise.
 
 use residual_bvh::{Hit, Ray};
 use residual_device_cpu::Traversal;
@@ -10,7 +10,6 @@ use residual_device_cpu::traversal::Alpha;
 use residual_render::domain::Buffer;
 use residual_render::light::{ALIAS_HEADER, RECORD};
 use residual_render::scene_data::SceneData;
-use residual_render::texture::srgb_table;
 
 use crate::rays::random;
 
@@ -92,8 +91,6 @@ pub(super) fn data(params_of_programs: &[Vec<u32>]) -> SceneData {
     ];
     data.buffer_mut(Buffer::Camera)
         .extend(camera.as_flattened().iter().map(|x| x.to_bits()));
-    data.buffer_mut(Buffer::Tables)
-        .extend(srgb_table().map(f32::to_bits));
     data
 }
 
