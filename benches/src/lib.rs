@@ -1,4 +1,5 @@
-//! Benchmarks of ray queries, our kernels beside Embree and obvhs on the same rays, and of whole renders ([`render`]).
+//! Benchmarks of ray queries, our kernels beside Embree and obvhs on the same rays; of whole renders ([`render`]); and of
+//! shading ([`shading`]).
 //!
 //! ```text
 //! scene file ─ scene ─ rays ─▶ one RaySet per kind ─┐
@@ -19,3 +20,4 @@ pub mod render;
 pub mod report;
 pub mod run;
 pub mod scene;
+pub mod shading;

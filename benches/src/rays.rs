@@ -161,7 +161,7 @@ fn cosine_distributed(normal: Vec3, u: f32, v: f32) -> Vec3 {
 }
 
 /// A number in [0, 1) that is a function of the index alone (PCG's output function on a hashed state).
-fn random(index: usize) -> f32 {
+pub(crate) fn random(index: usize) -> f32 {
     let state = (index as u32)
         .wrapping_mul(747_796_405)
         .wrapping_add(2_891_336_453);

@@ -204,7 +204,7 @@ pub fn build_table(rows: &[BuildRow]) -> String {
     text
 }
 
-fn interval(estimate: &Estimate, digits: usize) -> String {
+pub(crate) fn interval(estimate: &Estimate, digits: usize) -> String {
     let [lo, hi] = estimate.interval;
     format!(
         "{:6.digits$} [{lo:.digits$}, {hi:.digits$}]",

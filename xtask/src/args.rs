@@ -147,6 +147,26 @@ pub(crate) enum BenchCommand {
     Traversal(TraversalArgs),
     /// Whole renders: specialized and interpreted, with our traversal and with Embree's (set RESIDUAL_EMBREE_LIB)
     Render(RenderBenchArgs),
+    /// Shading alone, per kind of program: specialized and interpreted, with constants and with textures
+    Shading(ShadingArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct ShadingArgs {
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Paths shaded at once, with commas between them
+    #[arg(
+        long,
+        value_name = "N",
+        value_delimiter = ',',
+        default_value = "1,4,8,16"
+    )]
+    pub(crate) lanes: Vec<LaneCount>,
+    /// Measured rounds
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) rounds: u32,
 }
 
 #[derive(Args)]

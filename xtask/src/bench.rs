@@ -10,12 +10,13 @@ use residual_benches::report::{build_table, trace_table};
 use residual_benches::run::{Options, SceneReport, traversal};
 
 use crate::args::{BenchCommand, IsaArg, KernelArg, PrecisionArg, RaysArg, TraversalArgs};
-use crate::bench_render;
+use crate::{bench_render, bench_shading};
 
 pub(crate) fn run(command: &BenchCommand) -> Result<()> {
     match command {
         BenchCommand::Traversal(args) => run_traversal(args),
         BenchCommand::Render(args) => bench_render::run(args),
+        BenchCommand::Shading(args) => bench_shading::run(args),
     }
 }
 

@@ -5,6 +5,7 @@
 mod args;
 mod bench;
 mod bench_render;
+mod bench_shading;
 mod build;
 mod cache;
 pub mod compile;

@@ -17,7 +17,7 @@ use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, Hit, Surface};
 use residual_render::texture::{
-    AnyFilter, AnyFormat, AnyWrap, ColorSource, Const, Image, ScalarSource, UvMap,
+    AnyFilter, AnyFormat, AnyWrap, ColorSource, Const, Image, ScalarSource, UvMap, srgb_table,
 };
 
 use crate::support::random::Rng;
@@ -30,6 +30,13 @@ trait Formula {
 
 /// Rows in each column; a multiple of every lane count.
 const ROWS: usize = 2048;
+
+/// A scene whose texels are 256 numbers.
+fn numbers() -> SceneData {
+    let mut data = scene(&[FLOOR]);
+    *data.buffer_mut(Buffer::Texels) = srgb_table().map(f32::to_bits).to_vec();
+    data
+}
 
 fn evaluate<D: Lanes>(d: D, formula: &impl Formula, columns: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let mut results: Vec<Vec<u32>> = Vec::new();
@@ -170,8 +177,8 @@ impl Formula for Operations {
             truth(d, mask | d.le(b, c)),
             truth(d, d.truth(true)),
             d.branch(mask, || One(a + c), || One(b - c)).0,
-            d.load_real(Buffer::Tables, i >> 23),
-            d.uniform_real(Buffer::Tables, 7),
+            d.load_real(Buffer::Texels, i >> 23),
+            d.uniform_real(Buffer::Texels, 7),
             d.lit(0.1),
         ];
         // Truncation is specified for numbers from 0 to 2³² only.
@@ -189,8 +196,8 @@ impl Formula for Operations {
             i >> 31,
             d.reverse_bits(i),
             d.select_u(mask, i, j),
-            d.load(Buffer::Tables, i >> 22),
-            d.uniform(Buffer::Tables, 255),
+            d.load(Buffer::Texels, i >> 22),
+            d.uniform(Buffer::Texels, 255),
             d.uint(0x8000_0001),
             d.to_uint(d.select(inside, a, d.lit(3.9))),
         ];
@@ -200,15 +207,10 @@ impl Formula for Operations {
 
 #[test]
 fn operations_agree() {
-    check(
-        "operations",
-        &scene(&[FLOOR]),
-        &Operations,
-        &any_bits(5, 40),
-    );
+    check("operations", &numbers(), &Operations, &any_bits(5, 40));
     // Numbers of like size, whose results are not all infinite or 0.
     let near = reals(41, |r| [0; 5].map(|_| r.signed_power(-3.0, 30.0)));
-    check("operations", &scene(&[FLOOR]), &Operations, &near);
+    check("operations", &numbers(), &Operations, &near);
 }
 
 /// Records of four words to lanes and back.
@@ -262,10 +264,10 @@ fn rows_are_four_words() {
     struct Rows;
     impl Formula for Rows {
         fn run<D: Lanes>(&self, d: D, x: &[D::U]) -> Vec<D::U> {
-            let one: [_; 1] = d.load_rows(Buffer::Tables, x[0]);
-            let three: [_; 3] = d.load_rows(Buffer::Tables, x[0]);
+            let one: [_; 1] = d.load_rows(Buffer::Texels, x[0]);
+            let three: [_; 3] = d.load_rows(Buffer::Texels, x[0]);
             let words = one.into_iter().chain(three).flatten();
-            let single = (0..12).map(|k| d.load(Buffer::Tables, x[0] + d.uint(k)));
+            let single = (0..12).map(|k| d.load(Buffer::Texels, x[0] + d.uint(k)));
             words.chain(single).collect()
         }
     }
@@ -279,7 +281,7 @@ fn rows_are_four_words() {
         _ => rng.bits() % 245,
     };
     let columns = [(0..ROWS).map(first).collect()];
-    let data = scene(&[FLOOR]);
+    let data = numbers();
     let buffers = data.buffers();
     let results = evaluate(Scalar::new(&buffers), &Rows, &columns);
     assert_eq!(results[..4], results[16..20]);

@@ -37,6 +37,31 @@ fn srgb_table_is_correctly_rounded_and_goes_back() {
     }
 }
 
+#[test]
+fn codes_are_decoded_to_the_stated_error_in_order_and_exactly_at_the_ends() {
+    let mut data = numbered(1, 1);
+    let mut decoded = Vec::new();
+    for code in 0..=255 {
+        data.buffer_mut(Buffer::Texels)[8] = u32::from_le_bytes([code, 255, 0, 128]);
+        let buffers = data.buffers();
+        let d = Scalar::new(&buffers);
+        let wrap = (AnyWrap::Repeat, AnyWrap::Repeat);
+        let image = Image {
+            format: AnyFormat::SrgbRgba8,
+            ..image(wrap, AnyFilter::Nearest)
+        };
+        let [red, green, blue] = array(image.color(d, &floor(d)));
+        assert_eq!([green, blue], [1.0, 0.0]);
+        let exact = exact_srgb(code.into());
+        assert!(
+            (f64::from(red) - exact).abs() <= 1e-6 * exact,
+            "{code}: {red} {exact}"
+        );
+        decoded.push(red);
+    }
+    assert!(decoded.is_sorted_by(|a, b| a < b));
+}
+
 type AnyImage = Image<AnyWrap, AnyWrap, AnyFilter, AnyFormat>;
 const UV: UvMap = UvMap {
     set: 0,
@@ -268,10 +293,13 @@ fn channels_and_formats() {
                 exact_srgb(code) as f32
             };
             let got = read(k as u32, AnyFormat::SrgbRgba8).scalar(d, &surface);
-            assert!(ulp_diff(got, decoded) <= 1, "{got} {decoded}");
+            assert!((got - decoded).abs() <= 1e-6 * decoded, "{got} {decoded}");
         }
         let color = array(read(0, AnyFormat::SrgbRgba8).color(d, &surface));
-        assert_eq!(color, [10, 100, 200].map(|code| exact_srgb(code) as f32));
+        for (got, code) in color.into_iter().zip([10, 100, 200]) {
+            let exact = exact_srgb(code) as f32;
+            assert!((got - exact).abs() <= 1e-6 * exact, "{got} {exact}");
+        }
     }
     let full = Image {
         slot: 0,

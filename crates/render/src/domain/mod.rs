@@ -109,13 +109,11 @@ pub enum Buffer {
     Environment,
     /// The camera.
     Camera,
-    /// Constant tables: sRGB decoding.
-    Tables,
 }
 
 impl Buffer {
     /// How many there are.
-    pub const COUNT: usize = Self::Tables as usize + 1;
+    pub const COUNT: usize = Self::Camera as usize + 1;
 
     /// All of them, in order.
     pub const ALL: [Self; Self::COUNT] = [
@@ -132,7 +130,6 @@ impl Buffer {
         Self::LightAlias,
         Self::Environment,
         Self::Camera,
-        Self::Tables,
     ];
 }
 

@@ -6,7 +6,6 @@ use residual_render::domain::{Buffer, Domain};
 use residual_render::light::environment::HEADER;
 use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD};
 use residual_render::scene_data::SceneData;
-use residual_render::texture::srgb_table;
 
 /// Words of a triangle's parameters.
 pub(crate) const BLOCK: u32 = 64;
@@ -70,8 +69,6 @@ pub(crate) fn scene() -> SceneData {
     fill(Buffer::Camera, 12, -1.0, 1.0);
     fill(Buffer::LightAlias, ALIAS_HEADER + ALIAS_ENTRY * 5, 0.05, 1.0);
     fill(Buffer::Environment, HEADER + ALIAS_ENTRY * 12, 0.1, 1.0);
-    data.buffer_mut(Buffer::Tables)
-        .extend(srgb_table().map(f32::to_bits));
     for triangle in 0..TRIANGLES {
         let corners = [[0; 3]; 3].map(|corner| corner.map(|_| random.between(-2.0, 2.0)));
         data.push_triangle(corners, 0, BLOCK * triangle);

@@ -5,7 +5,6 @@ use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD, environment};
 use residual_render::math::vec3::vec3;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, Hit, Surface};
-use residual_render::texture::srgb_table;
 
 use super::alias::alias_table;
 
@@ -19,13 +18,12 @@ fn reals<'a>(values: impl IntoIterator<Item = &'a f32>) -> Vec<u32> {
     values.into_iter().map(|value| value.to_bits()).collect()
 }
 
-/// Triangles with programs and parameters 0, and the tables.
+/// Triangles with programs and parameters 0.
 pub(crate) fn scene(triangles: &[Triangle]) -> SceneData {
     let mut data = SceneData::default();
     for &triangle in triangles {
         data.push_triangle(triangle, 0, 0);
     }
-    *data.buffer_mut(Buffer::Tables) = reals(&srgb_table());
     data
 }
 

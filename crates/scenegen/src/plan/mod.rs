@@ -20,7 +20,6 @@ use residual_render::domain::Buffer;
 use residual_render::program::{Program, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
-use residual_render::texture::srgb_table;
 
 pub use camera::{CameraChoice, View};
 pub use explain::{BindingTimes, Decision};
@@ -164,7 +163,6 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         camera::place(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
     images.pack(scene, &mut data)?;
     *data.buffer_mut(Buffer::Params) = materials.params;
-    *data.buffer_mut(Buffer::Tables) = srgb_table().map(f32::to_bits).to_vec();
 
     Ok(Plan {
         name: scene.name.clone(),

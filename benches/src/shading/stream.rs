@@ -1,0 +1,149 @@
+//! What is shaded: hits on a patch of triangles, the same for every program, and the images on it.
+//!
+//! The hits come in the order of a coherent stream: [`HITS`] of them on [`TRIANGLES`] triangles, 32 neighbours at random
+//! places of the eight triangles around theirs. The patch spans 256² of the 1024² texels of each image, so these 32 fall on
+//! 32 × 16 texels; colours and numbers are noise.
+
+use residual_bvh::{Hit, Ray};
+use residual_device_cpu::Traversal;
+use residual_device_cpu::traversal::Alpha;
+use residual_render::domain::Buffer;
+use residual_render::light::{ALIAS_HEADER, RECORD};
+use residual_render::scene_data::SceneData;
+
+use crate::rays::random;
+
+/// Paths under way: as many as a tile has.
+pub const HITS: usize = 4096;
+/// Triangles of the patch.
+pub const TRIANGLES: usize = 2 * CELLS[0] * CELLS[1];
+/// Cells of two triangles along and across the patch.
+const CELLS: [usize; 2] = [32, 16];
+
+/// Width and height of the images.
+const SIDE: u32 = 1024;
+/// Part of the images' sides that the patch spans.
+const SPAN: f32 = 0.25;
+/// The sRGB images.
+pub(super) const COLOR_IMAGES: [u32; 4] = [0, 1, 2, 3];
+/// The linear image.
+pub(super) const NUMBER_IMAGE: u32 = 4;
+const IMAGES: u32 = 5;
+
+/// First texel, width and height of an image.
+pub(super) fn image_slot(image: u32) -> [u32; 3] {
+    [image * SIDE * SIDE, SIDE, SIDE]
+}
+
+/// The patch once for each program, with the program's parameters; two lights, one on each side of it; images; a camera
+/// that looks at it.
+pub(super) fn data(params_of_programs: &[Vec<u32>]) -> SceneData {
+    let mut data = SceneData::default();
+    let [columns, rows] = CELLS;
+    // Gently bumped, so that no two normals are the same.
+    let corner = |column: usize, row: usize| {
+        let (x, y) = (column as f32 / columns as f32, row as f32 / rows as f32);
+        [
+            4.0 * x - 2.0,
+            4.0 * y - 2.0,
+            0.1 * random(row * (columns + 1) + column),
+        ]
+    };
+    let vertex = |column, row| (row * (columns + 1) + column) as u32;
+    for (program, params) in params_of_programs.iter().enumerate() {
+        let first = data.buffer(Buffer::Params).len() as u32;
+        data.buffer_mut(Buffer::Params).extend(params);
+        for cell in 0..columns * rows {
+            let (x, y) = (cell % columns, cell / columns);
+            for corners in [
+                [(x, y), (x + 1, y), (x + 1, y + 1)],
+                [(x, y), (x + 1, y + 1), (x, y + 1)],
+            ] {
+                data.push_triangle(corners.map(|(x, y)| corner(x, y)), program as u32, first);
+                let [a, b, c] = corners.map(|(x, y)| vertex(x, y));
+                data.buffer_mut(Buffer::Indices).extend([a, b, c, 0]);
+            }
+        }
+    }
+    for row in 0..=rows {
+        for column in 0..=columns {
+            let uv = [
+                SPAN * column as f32 / columns as f32,
+                SPAN * row as f32 / rows as f32,
+            ];
+            let [u, v] = uv.map(f32::to_bits);
+            data.buffer_mut(Buffer::Uvs).extend([u, v, u, v]);
+        }
+    }
+    // Bright enough that paths live on.
+    let byte = |index: usize| 0x80 | (random(index) * 128.0) as u32;
+    let texels = (0..(IMAGES * SIDE * SIDE) as usize).map(|texel| {
+        let [r, g, b] = [0, 1, 2].map(|channel| byte(3 * texel + channel));
+        r | g << 8 | b << 16 | 0xff00_0000
+    });
+    data.buffer_mut(Buffer::Texels).extend(texels);
+    set_lights(&mut data, [[0.5, 0.7, 2.0], [0.5, 0.7, -2.0]]);
+    let camera: [[f32; 3]; 4] = [
+        [0.0, 0.0, 3.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, -2.0],
+    ];
+    data.buffer_mut(Buffer::Camera)
+        .extend(camera.as_flattened().iter().map(|x| x.to_bits()));
+    data
+}
+
+/// Two point lights of the structure's only kind, picked evenly.
+fn set_lights(data: &mut SceneData, positions: [[f32; 3]; 2]) {
+    let one = 1.0_f32.to_bits();
+    let half = 0.5_f32.to_bits();
+    for [x, y, z] in positions.map(|position| position.map(f32::to_bits)) {
+        let record = [0, x, y, z, one, one, one, 0, 0, 0, 0, 0];
+        assert_eq!(record.len(), RECORD as usize);
+        data.buffer_mut(Buffer::Lights).extend(record);
+    }
+    let alias = data.buffer_mut(Buffer::LightAlias);
+    alias.extend([2, 0, 0, 0]);
+    assert_eq!(alias.len(), ALIAS_HEADER as usize);
+    alias.extend([one, 0, half, half, one, 1, half, half]);
+}
+
+/// A traversal that needs no time: every ray hits the patch of one program, whatever its direction, and every shadow ray is
+/// blocked.
+pub(super) struct Hits(Vec<Hit>);
+
+impl Hits {
+    pub(super) fn on(program: usize) -> Self {
+        let triangle_at = |hit: usize| {
+            let around = hit * TRIANGLES / HITS / 8 * 8 + (random(3 * hit) * 8.0) as usize;
+            (program * TRIANGLES + around) as u32
+        };
+        let hit = |index: usize| {
+            let (u, v) = (random(3 * index + 1), random(3 * index + 2));
+            let (u, v) = if u + v > 1.0 {
+                (1.0 - u, 1.0 - v)
+            } else {
+                (u, v)
+            };
+            Hit {
+                t: 1.0,
+                u,
+                v,
+                prim: triangle_at(index),
+            }
+        };
+        Self((0..HITS).map(hit).collect())
+    }
+}
+
+impl Traversal for Hits {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], _: Option<&Alpha<'_>>) {
+        let count = rays.len();
+        hits[..count].copy_from_slice(&self.0[..count]);
+    }
+
+    fn any_hits(&self, _: &[Ray], occluded: &mut [bool], _: Option<&Alpha<'_>>) {
+        occluded.fill(true);
+    }
+}
