@@ -29,7 +29,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x5fa2dc034a422717;
+    pub const STRUCTURE: u64 = 0x83757d675c84731f;
 }
 
 impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
@@ -57,46 +57,51 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     #[inline(always)]
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         match program {
-            0 => visitor.visit(&Program0),
+            0 => visitor.visit(&program0::Program),
             _ => unreachable!("the scene has 1 programs"),
         }
     }
 }
 
-/// materials/0 "plastic"
-struct Program0;
+/// "plastic"
+mod program0 {
+    #[allow(clippy::wildcard_imports, reason = "a program is part of its scene")]
+    use super::*;
 
-impl<D: Domain> Material<D> for Program0 {
-    #[inline(always)]
-    fn attributes(&self) -> Attributes {
-        Attributes::NONE
-    }
+    pub struct Program;
 
-    #[inline(always)]
-    #[allow(unused_variables, reason = "not every program reads everything")]
-    fn shade<'s>(
-        &'s self,
-        d: D,
-        surface: &mut Surface<D>,
-        wo: Vec3<D::F>,
-    ) -> Shading<D::F, impl Bsdf<D> + 's>
-    where
-        D: 's,
-    {
-        let albedo = Bound(Param(0).color(d, surface));
-        let specular = Bound(Param(4).color(d, surface));
-        let exponent = Bound(Param(8).scalar(d, surface));
-        let specular_probability = Bound(Param(9).scalar(d, surface));
-        Shading {
-            emission: None,
-            bsdf: Sum {
-                a: Diffuse { albedo },
-                b: Phong {
-                    color: specular,
-                    exponent,
+    impl<D: Domain> Material<D> for Program {
+        #[inline(always)]
+        fn attributes(&self) -> Attributes {
+            Attributes::NONE
+        }
+
+        #[inline(always)]
+        #[allow(unused_variables, reason = "not every program reads everything")]
+        fn shade<'s>(
+            &'s self,
+            d: D,
+            surface: &mut Surface<D>,
+            wo: Vec3<D::F>,
+        ) -> Shading<D::F, impl Bsdf<D> + 's>
+        where
+            D: 's,
+        {
+            let albedo = Bound(Param(0).color(d, surface));
+            let specular = Bound(Param(4).color(d, surface));
+            let exponent = Bound(Param(8).scalar(d, surface));
+            let specular_probability = Bound(Param(9).scalar(d, surface));
+            Shading {
+                emission: None,
+                bsdf: Sum {
+                    a: Diffuse { albedo },
+                    b: Phong {
+                        color: specular,
+                        exponent,
+                    },
+                    probability: specular_probability,
                 },
-                probability: specular_probability,
-            },
+            }
         }
     }
 }

@@ -29,7 +29,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x9a96edeadc5a3e7e;
+    pub const STRUCTURE: u64 = 0xb713666227d4d3c8;
 }
 
 impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
@@ -63,65 +63,75 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     #[inline(always)]
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         match program {
-            0 => visitor.visit(&Program0),
-            1 => visitor.visit(&Program1),
+            0 => visitor.visit(&program0::Program),
+            1 => visitor.visit(&program1::Program),
             _ => unreachable!("the scene has 2 programs"),
         }
     }
 }
 
-/// materials/0 "gray"
-struct Program0;
+/// "gray"
+mod program0 {
+    #[allow(clippy::wildcard_imports, reason = "a program is part of its scene")]
+    use super::*;
 
-impl<D: Domain> Material<D> for Program0 {
-    #[inline(always)]
-    fn attributes(&self) -> Attributes {
-        Attributes::NONE
-    }
+    pub struct Program;
 
-    #[inline(always)]
-    #[allow(unused_variables, reason = "not every program reads everything")]
-    fn shade<'s>(
-        &'s self,
-        d: D,
-        surface: &mut Surface<D>,
-        wo: Vec3<D::F>,
-    ) -> Shading<D::F, impl Bsdf<D> + 's>
-    where
-        D: 's,
-    {
-        let albedo = Bound(Param(0).color(d, surface));
-        Shading {
-            emission: None,
-            bsdf: Diffuse { albedo },
+    impl<D: Domain> Material<D> for Program {
+        #[inline(always)]
+        fn attributes(&self) -> Attributes {
+            Attributes::NONE
+        }
+
+        #[inline(always)]
+        #[allow(unused_variables, reason = "not every program reads everything")]
+        fn shade<'s>(
+            &'s self,
+            d: D,
+            surface: &mut Surface<D>,
+            wo: Vec3<D::F>,
+        ) -> Shading<D::F, impl Bsdf<D> + 's>
+        where
+            D: 's,
+        {
+            let albedo = Bound(Param(0).color(d, surface));
+            Shading {
+                emission: None,
+                bsdf: Diffuse { albedo },
+            }
         }
     }
 }
 
-/// materials/1 "lamp"
-struct Program1;
+/// "lamp"
+mod program1 {
+    #[allow(clippy::wildcard_imports, reason = "a program is part of its scene")]
+    use super::*;
 
-impl<D: Domain> Material<D> for Program1 {
-    #[inline(always)]
-    fn attributes(&self) -> Attributes {
-        Attributes::NONE
-    }
+    pub struct Program;
 
-    #[inline(always)]
-    #[allow(unused_variables, reason = "not every program reads everything")]
-    fn shade<'s>(
-        &'s self,
-        d: D,
-        surface: &mut Surface<D>,
-        wo: Vec3<D::F>,
-    ) -> Shading<D::F, impl Bsdf<D> + 's>
-    where
-        D: 's,
-    {
-        let emission = Bound(Param(0).color(d, surface));
-        Shading {
-            emission: Some(emission.0),
-            bsdf: Black,
+    impl<D: Domain> Material<D> for Program {
+        #[inline(always)]
+        fn attributes(&self) -> Attributes {
+            Attributes::NONE
+        }
+
+        #[inline(always)]
+        #[allow(unused_variables, reason = "not every program reads everything")]
+        fn shade<'s>(
+            &'s self,
+            d: D,
+            surface: &mut Surface<D>,
+            wo: Vec3<D::F>,
+        ) -> Shading<D::F, impl Bsdf<D> + 's>
+        where
+            D: 's,
+        {
+            let emission = Bound(Param(0).color(d, surface));
+            Shading {
+                emission: Some(emission.0),
+                bsdf: Black,
+            }
         }
     }
 }

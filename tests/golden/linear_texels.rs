@@ -29,11 +29,11 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x3ec4f5148f1d22ca;
+    pub const STRUCTURE: u64 = 0x5d302c88221a1e4f;
 }
 
 const TEXTURE_0: Image<Repeat, Repeat, Bilinear, LinearRgba8> = Image {
-    slot: 5,
+    slot: 9,
     uv: UvMap {
         set: 0,
         transform: None,
@@ -69,47 +69,52 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     #[inline(always)]
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         match program {
-            0 => visitor.visit(&Program0),
+            0 => visitor.visit(&program0::Program),
             _ => unreachable!("the scene has 1 programs"),
         }
     }
 }
 
-/// materials/0 "smears"
-struct Program0;
+/// "smears", image "image 0"
+mod program0 {
+    #[allow(clippy::wildcard_imports, reason = "a program is part of its scene")]
+    use super::*;
 
-impl<D: Domain> Material<D> for Program0 {
-    #[inline(always)]
-    fn attributes(&self) -> Attributes {
-        Attributes {
-            uv0: true,
-            ..Attributes::NONE
+    pub struct Program;
+
+    impl<D: Domain> Material<D> for Program {
+        #[inline(always)]
+        fn attributes(&self) -> Attributes {
+            Attributes {
+                uv0: true,
+                ..Attributes::NONE
+            }
         }
-    }
 
-    #[inline(always)]
-    #[allow(unused_variables, reason = "not every program reads everything")]
-    fn shade<'s>(
-        &'s self,
-        d: D,
-        surface: &mut Surface<D>,
-        wo: Vec3<D::F>,
-    ) -> Shading<D::F, impl Bsdf<D> + 's>
-    where
-        D: 's,
-    {
-        let albedo = Bound(Param(0).color(d, surface));
-        let roughness = Bound(Product(Param(4), TEXTURE_0).scalar(d, surface));
-        let reflectance = Bound(Param(9).color(d, surface));
-        let grazing_reflectance = Bound(Const(1.0_f32).scalar(d, surface));
-        Shading {
-            emission: None,
-            bsdf: Glossy {
-                albedo,
-                roughness,
-                reflectance,
-                grazing: grazing_reflectance,
-            },
+        #[inline(always)]
+        #[allow(unused_variables, reason = "not every program reads everything")]
+        fn shade<'s>(
+            &'s self,
+            d: D,
+            surface: &mut Surface<D>,
+            wo: Vec3<D::F>,
+        ) -> Shading<D::F, impl Bsdf<D> + 's>
+        where
+            D: 's,
+        {
+            let albedo = Bound(Param(0).color(d, surface));
+            let roughness = Bound(Product(Param(8), TEXTURE_0).scalar(d, surface));
+            let reflectance = Bound(Param(4).color(d, surface));
+            let grazing_reflectance = Bound(Const(1.0_f32).scalar(d, surface));
+            Shading {
+                emission: None,
+                bsdf: Glossy {
+                    albedo,
+                    roughness,
+                    reflectance,
+                    grazing: grazing_reflectance,
+                },
+            }
         }
     }
 }

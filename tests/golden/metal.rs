@@ -29,7 +29,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x3be8c793607f74fd;
+    pub const STRUCTURE: u64 = 0xe049536beb1af235;
 }
 
 impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
@@ -57,40 +57,45 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     #[inline(always)]
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         match program {
-            0 => visitor.visit(&Program0),
+            0 => visitor.visit(&program0::Program),
             _ => unreachable!("the scene has 1 programs"),
         }
     }
 }
 
-/// materials/0 "brass"
-struct Program0;
+/// "brass"
+mod program0 {
+    #[allow(clippy::wildcard_imports, reason = "a program is part of its scene")]
+    use super::*;
 
-impl<D: Domain> Material<D> for Program0 {
-    #[inline(always)]
-    fn attributes(&self) -> Attributes {
-        Attributes::NONE
-    }
+    pub struct Program;
 
-    #[inline(always)]
-    #[allow(unused_variables, reason = "not every program reads everything")]
-    fn shade<'s>(
-        &'s self,
-        d: D,
-        surface: &mut Surface<D>,
-        wo: Vec3<D::F>,
-    ) -> Shading<D::F, impl Bsdf<D> + 's>
-    where
-        D: 's,
-    {
-        let albedo = Bound(Param(0).color(d, surface));
-        let roughness = Bound(Param(4).scalar(d, surface));
-        Shading {
-            emission: None,
-            bsdf: Conductor {
-                color: albedo,
-                roughness,
-            },
+    impl<D: Domain> Material<D> for Program {
+        #[inline(always)]
+        fn attributes(&self) -> Attributes {
+            Attributes::NONE
+        }
+
+        #[inline(always)]
+        #[allow(unused_variables, reason = "not every program reads everything")]
+        fn shade<'s>(
+            &'s self,
+            d: D,
+            surface: &mut Surface<D>,
+            wo: Vec3<D::F>,
+        ) -> Shading<D::F, impl Bsdf<D> + 's>
+        where
+            D: 's,
+        {
+            let albedo = Bound(Param(0).color(d, surface));
+            let roughness = Bound(Param(4).scalar(d, surface));
+            Shading {
+                emission: None,
+                bsdf: Conductor {
+                    color: albedo,
+                    roughness,
+                },
+            }
         }
     }
 }

@@ -29,7 +29,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xe409b8af5f562779;
+    pub const STRUCTURE: u64 = 0x0cc001baec274e81;
 }
 
 impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
@@ -57,52 +57,57 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     #[inline(always)]
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         match program {
-            0 => visitor.visit(&Program0),
+            0 => visitor.visit(&program0::Program),
             _ => unreachable!("the scene has 1 programs"),
         }
     }
 }
 
-/// materials/0 "worn"
-struct Program0;
+/// "worn"
+mod program0 {
+    #[allow(clippy::wildcard_imports, reason = "a program is part of its scene")]
+    use super::*;
 
-impl<D: Domain> Material<D> for Program0 {
-    #[inline(always)]
-    fn attributes(&self) -> Attributes {
-        Attributes::NONE
-    }
+    pub struct Program;
 
-    #[inline(always)]
-    #[allow(unused_variables, reason = "not every program reads everything")]
-    fn shade<'s>(
-        &'s self,
-        d: D,
-        surface: &mut Surface<D>,
-        wo: Vec3<D::F>,
-    ) -> Shading<D::F, impl Bsdf<D> + 's>
-    where
-        D: 's,
-    {
-        let albedo = Bound(Param(0).color(d, surface));
-        let roughness = Bound(Param(4).scalar(d, surface));
-        let reflectance = Bound(Param(6).color(d, surface));
-        let grazing_reflectance = Bound(Const(1.0_f32).scalar(d, surface));
-        let metallic = Bound(Param(5).scalar(d, surface));
-        Shading {
-            emission: None,
-            bsdf: Mix {
-                a: Glossy {
-                    albedo,
-                    roughness,
-                    reflectance,
-                    grazing: grazing_reflectance,
+    impl<D: Domain> Material<D> for Program {
+        #[inline(always)]
+        fn attributes(&self) -> Attributes {
+            Attributes::NONE
+        }
+
+        #[inline(always)]
+        #[allow(unused_variables, reason = "not every program reads everything")]
+        fn shade<'s>(
+            &'s self,
+            d: D,
+            surface: &mut Surface<D>,
+            wo: Vec3<D::F>,
+        ) -> Shading<D::F, impl Bsdf<D> + 's>
+        where
+            D: 's,
+        {
+            let albedo = Bound(Param(0).color(d, surface));
+            let roughness = Bound(Param(4).scalar(d, surface));
+            let reflectance = Bound(Param(5).color(d, surface));
+            let grazing_reflectance = Bound(Const(1.0_f32).scalar(d, surface));
+            let metallic = Bound(Param(4).scalar(d, surface));
+            Shading {
+                emission: None,
+                bsdf: Mix {
+                    a: Glossy {
+                        albedo,
+                        roughness,
+                        reflectance,
+                        grazing: grazing_reflectance,
+                    },
+                    b: Conductor {
+                        color: albedo,
+                        roughness,
+                    },
+                    weight: metallic,
                 },
-                b: Conductor {
-                    color: albedo,
-                    roughness,
-                },
-                weight: metallic,
-            },
+            }
         }
     }
 }

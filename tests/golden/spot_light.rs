@@ -29,7 +29,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xb3d6cc406eeeed4b;
+    pub const STRUCTURE: u64 = 0x928c9bbf0e65743b;
 }
 
 impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
@@ -57,36 +57,41 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     #[inline(always)]
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         match program {
-            0 => visitor.visit(&Program0),
+            0 => visitor.visit(&program0::Program),
             _ => unreachable!("the scene has 1 programs"),
         }
     }
 }
 
-/// materials/0 "gray"
-struct Program0;
+/// "gray"
+mod program0 {
+    #[allow(clippy::wildcard_imports, reason = "a program is part of its scene")]
+    use super::*;
 
-impl<D: Domain> Material<D> for Program0 {
-    #[inline(always)]
-    fn attributes(&self) -> Attributes {
-        Attributes::NONE
-    }
+    pub struct Program;
 
-    #[inline(always)]
-    #[allow(unused_variables, reason = "not every program reads everything")]
-    fn shade<'s>(
-        &'s self,
-        d: D,
-        surface: &mut Surface<D>,
-        wo: Vec3<D::F>,
-    ) -> Shading<D::F, impl Bsdf<D> + 's>
-    where
-        D: 's,
-    {
-        let albedo = Bound(Param(0).color(d, surface));
-        Shading {
-            emission: None,
-            bsdf: Diffuse { albedo },
+    impl<D: Domain> Material<D> for Program {
+        #[inline(always)]
+        fn attributes(&self) -> Attributes {
+            Attributes::NONE
+        }
+
+        #[inline(always)]
+        #[allow(unused_variables, reason = "not every program reads everything")]
+        fn shade<'s>(
+            &'s self,
+            d: D,
+            surface: &mut Surface<D>,
+            wo: Vec3<D::F>,
+        ) -> Shading<D::F, impl Bsdf<D> + 's>
+        where
+            D: 's,
+        {
+            let albedo = Bound(Param(0).color(d, surface));
+            Shading {
+                emission: None,
+                bsdf: Diffuse { albedo },
+            }
         }
     }
 }

@@ -29,7 +29,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xbe186a2f668a804f;
+    pub const STRUCTURE: u64 = 0xb7dae6b8593ce977;
 }
 
 const TEXTURE_0: Image<Repeat, Repeat, Bilinear, SrgbRgba8> = Image {
@@ -69,39 +69,44 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     #[inline(always)]
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         match program {
-            0 => visitor.visit(&Program0),
+            0 => visitor.visit(&program0::Program),
             _ => unreachable!("the scene has 1 programs"),
         }
     }
 }
 
-/// materials/0 "printed"
-struct Program0;
+/// "printed", image "image 0"
+mod program0 {
+    #[allow(clippy::wildcard_imports, reason = "a program is part of its scene")]
+    use super::*;
 
-impl<D: Domain> Material<D> for Program0 {
-    #[inline(always)]
-    fn attributes(&self) -> Attributes {
-        Attributes {
-            uv0: true,
-            ..Attributes::NONE
+    pub struct Program;
+
+    impl<D: Domain> Material<D> for Program {
+        #[inline(always)]
+        fn attributes(&self) -> Attributes {
+            Attributes {
+                uv0: true,
+                ..Attributes::NONE
+            }
         }
-    }
 
-    #[inline(always)]
-    #[allow(unused_variables, reason = "not every program reads everything")]
-    fn shade<'s>(
-        &'s self,
-        d: D,
-        surface: &mut Surface<D>,
-        wo: Vec3<D::F>,
-    ) -> Shading<D::F, impl Bsdf<D> + 's>
-    where
-        D: 's,
-    {
-        let albedo = Bound(TEXTURE_0.color(d, surface));
-        Shading {
-            emission: None,
-            bsdf: Diffuse { albedo },
+        #[inline(always)]
+        #[allow(unused_variables, reason = "not every program reads everything")]
+        fn shade<'s>(
+            &'s self,
+            d: D,
+            surface: &mut Surface<D>,
+            wo: Vec3<D::F>,
+        ) -> Shading<D::F, impl Bsdf<D> + 's>
+        where
+            D: 's,
+        {
+            let albedo = Bound(TEXTURE_0.color(d, surface));
+            Shading {
+                emission: None,
+                bsdf: Diffuse { albedo },
+            }
         }
     }
 }

@@ -48,7 +48,8 @@ impl Cache {
     pub(crate) fn key(source: &str) -> Result<String> {
         let fingerprint = workspace::fingerprint().context("reading the workspace's sources")?;
         let mut hasher = DefaultHasher::new();
-        (fingerprint, source).hash(&mut hasher);
+        fingerprint.hash(&mut hasher);
+        code(source).for_each(|line| line.hash(&mut hasher));
         Ok(format!("{:016x}", hasher.finish()))
     }
 
@@ -56,7 +57,8 @@ impl Cache {
     pub(crate) fn find(&self, key: &str, source: &str) -> Option<PathBuf> {
         let directory = self.directory.join(key);
         // Two sources may share a key, in theory.
-        let same = fs::read_to_string(directory.join(SOURCE)).is_ok_and(|kept| kept == source);
+        let kept = fs::read_to_string(directory.join(SOURCE));
+        let same = kept.is_ok_and(|kept| code(&kept).eq(code(source)));
         let library = directory.join(LIBRARY);
         if !same || !library.exists() {
             return None;
@@ -136,6 +138,13 @@ impl Cache {
             _ => Ok(()),
         }
     }
+}
+
+/// A source without its comments: what things are called in the scene makes no other renderer.
+fn code(source: &str) -> impl Iterator<Item = &str> {
+    source
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
 }
 
 impl Entry {
@@ -222,6 +231,7 @@ mod tests {
         assert!(cache.find("b", "b").is_none());
         assert!(cache.find("a", "a").is_some() && cache.find("c", "c").is_some());
         assert!(cache.find("a", "another source of the same key").is_none());
+        assert!(cache.find("a", "// of another scene\na").is_some());
         cache.clear().unwrap();
         cache.clear().unwrap();
         assert!(cache.find("a", "a").is_none());

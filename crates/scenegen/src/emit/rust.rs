@@ -1,5 +1,6 @@
 //! Rust: a scene's structure as concrete types.
 
+use std::collections::BTreeSet;
 use std::fmt::{self, Write as _};
 
 use residual_render::alpha::AlphaTest;
@@ -265,8 +266,11 @@ fn material(
 ) -> fmt::Result {
     writeln!(out)?;
     for material in uses {
-        let images = material.images.values();
-        let images: String = images.map(|image| format!(", image {image:?}")).collect();
+        let images: BTreeSet<_> = material.images.values().collect();
+        let images: String = images
+            .into_iter()
+            .map(|image| format!(", image {image:?}"))
+            .collect();
         writeln!(out, "/// {:?}{images}", material.name)?;
     }
     writeln!(out, "mod program{number} {{\n{PROGRAM}")?;

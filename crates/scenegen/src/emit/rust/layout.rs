@@ -162,13 +162,15 @@ impl Code {
                     &close,
                 )
             }
-            Self::Method { receiver, call } => {
-                format!(
-                    "{}\n{}{call}",
-                    receiver.broken(indent, column, 0),
-                    spaces(indent)
-                )
-            }
+            Self::Method { receiver, call } => match receiver.one_line() {
+                Some(line) if column + line.len() <= WIDTH => {
+                    format!("{line}\n{}{call}", spaces(inner))
+                }
+                _ => {
+                    let receiver = receiver.broken(indent, column, 0);
+                    format!("{receiver}\n{}{call}", spaces(indent))
+                }
+            },
         }
     }
 }
