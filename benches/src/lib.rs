@@ -11,6 +11,8 @@
 
 pub mod contender;
 pub mod embree;
+pub mod flip;
+pub mod image_error;
 pub mod isa;
 pub mod measure;
 pub mod ours;

@@ -101,6 +101,18 @@ pub(crate) struct InspectArgs {
     /// One JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
+    /// Measure what each effect costs in time, and what the image would be without it
+    #[arg(long)]
+    pub(crate) measure: bool,
+    /// Measured rounds
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(2..=1000), requires = "measure")]
+    pub(crate) rounds: u32,
+    /// Samples per pixel in a round
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..), requires = "measure")]
+    pub(crate) spp: u32,
+    /// How the renderers are made that are compared
+    #[arg(long, value_enum, default_value_t = TierArg::Specialized, requires = "measure")]
+    pub(crate) tier: TierArg,
 }
 
 #[derive(Args)]

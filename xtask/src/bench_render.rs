@@ -12,7 +12,6 @@ use residual_device_cpu::{
     AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, Traversal,
 };
 use residual_frontend::hierarchy_quality;
-use residual_render::sampler::AnySampler;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, plan};
 
@@ -78,7 +77,7 @@ fn load(path: &Path, args: &RenderBenchArgs) -> Result<Plan> {
         camera: CameraChoice::Default,
         size: args.size.0,
         culling: CullingRule::None,
-        sampler: AnySampler::Sobol,
+        ..PlanOptions::default()
     };
     plan(&scene, &options).with_context(|| path.display().to_string())
 }

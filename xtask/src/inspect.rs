@@ -8,15 +8,33 @@ use residual_scenegen::plan::{BindingTimes, Decision, Plan};
 use serde_json::{Map, Value, json};
 
 use crate::args::InspectArgs;
+use crate::price::{self, Price};
 use crate::scene;
 
 pub(crate) fn run(args: &InspectArgs) -> Result<()> {
     let (plan, _) = scene::load(&args.scene)?;
     let effects = Effects::of(&plan);
+    let prices = match args.measure {
+        true => {
+            let (scene, options) = scene::read(&args.scene)?;
+            Some(price::prices(&scene, &options, args)?)
+        }
+        false => None,
+    };
     if args.json {
-        println!("{}", report(&plan, &effects));
+        let mut report = report(&plan, &effects);
+        if let Some(prices) = prices {
+            report["prices"] = prices.iter().map(Price::json).collect();
+        }
+        println!("{report}");
     } else {
         print(&plan, &effects);
+        if let Some(prices) = prices {
+            println!(
+                "\nprices, in parts of the time of rendering:\n{}",
+                price::table(&prices)
+            );
+        }
     }
     Ok(())
 }

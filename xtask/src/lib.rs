@@ -11,6 +11,7 @@ mod cache;
 pub mod compile;
 mod emit;
 mod inspect;
+mod price;
 mod render;
 mod scene;
 mod tiers;

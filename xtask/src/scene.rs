@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
+use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, View, plan};
@@ -22,9 +23,8 @@ pub(crate) fn summary(plan: &Plan) -> SceneSummary {
     }
 }
 
-/// Reads and plans the scene; warnings go to standard error.
-pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
-    let start = Instant::now();
+/// Reads the scene, and says how it is to be planned.
+pub(crate) fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
     let environment = args.env.as_ref().map(|path| EnvironmentOptions {
         path: path.clone(),
         strength: args.env_strength,
@@ -63,7 +63,15 @@ pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
             SamplerArg::Sobol => AnySampler::Sobol,
             SamplerArg::Independent => AnySampler::Independent,
         },
+        flat_normals: false,
     };
+    Ok((scene, options))
+}
+
+/// Reads and plans the scene; warnings go to standard error.
+pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
+    let start = Instant::now();
+    let (scene, options) = read(args)?;
     let plan = plan(&scene, &options).with_context(|| args.scene.display().to_string())?;
     for warning in scene.warnings.iter().chain(&plan.warnings) {
         eprintln!(

@@ -1,5 +1,6 @@
 //! From a scene file to a renderer: import, effects, plan, emission.
 
+pub mod ablation;
 pub mod build_script;
 pub mod desc;
 mod desc_validate;

@@ -45,7 +45,14 @@ pub(super) fn plan_materials(
             name: &desc.name,
             encloses,
         };
-        let (program, invisible) = builder.program(desc, available);
+        let has_normals = available.normals && !options.flat_normals;
+        let (program, invisible) = builder.program(
+            desc,
+            Attributes {
+                normals: has_normals,
+                ..available
+            },
+        );
         let collected = builder.sources.collected();
         let transmits = bsdf_transmits(&program.bsdf);
         let culled = options.culling == CullingRule::Gltf && !desc.double_sided && !transmits;
@@ -293,16 +300,17 @@ impl Builder<'_> {
     fn opaque_dielectric(&mut self, surface: &MetallicRoughness, albedo: ColorNode) -> BsdfNode {
         // KHR_materials_specular and KHR_materials_ior: F0 = min(((η−1)/(η+1))²·colour, 1)·strength, F90 = strength.
         let grazing = self.sources.scalar(&surface.specular);
+        let (strength, strength_texture) = self.sources.reduced(&surface.specular);
         let normal_incidence = ((surface.ior - 1.0) / (surface.ior + 1.0)).powi(2);
         let mut at_normal = surface.specular_color.clone();
         at_normal.factor = at_normal
             .factor
-            .map(|c| (c * normal_incidence).min(1.0) * surface.specular.factor);
+            .map(|c| (c * normal_incidence).min(1.0) * strength);
         let reflectance = self.sources.color(&at_normal, false);
         if grazing == ScalarNode::Const(0.0) || (is_black(&reflectance) && surface.ior == 1.0) {
             return self.diffuse(albedo);
         }
-        let reflectance = match &surface.specular.texture {
+        let reflectance = match strength_texture {
             Some((texture, channel)) => {
                 let strength = ColorNode::Gray(Box::new(self.sources.channel(texture, *channel)));
                 self.sources.color_product(reflectance, strength)

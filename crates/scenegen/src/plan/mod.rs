@@ -58,6 +58,8 @@ pub struct PlanOptions {
     pub size: [u32; 2],
     /// Culling.
     pub culling: CullingRule,
+    /// All triangles are flat, whatever normals they have.
+    pub flat_normals: bool,
     /// Sampler.
     pub sampler: AnySampler,
 }
@@ -69,6 +71,7 @@ impl Default for PlanOptions {
             camera: CameraChoice::default(),
             size: [640, 480],
             culling: CullingRule::default(),
+            flat_normals: false,
             sampler: AnySampler::Sobol,
         }
     }

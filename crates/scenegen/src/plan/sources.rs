@@ -198,21 +198,35 @@ impl<'a> Sources<'a> {
     }
 
     fn new_scalar(&mut self, input: &ScalarInput) -> ScalarNode {
+        let (factor, texture) = self.reduced(input);
+        let factor = self.number(factor);
+        match texture {
+            None => factor,
+            Some((texture, channel)) => {
+                let texel = self.channel(texture, *channel);
+                self.scalar_product(factor, texel)
+            }
+        }
+    }
+
+    /// A scalar input's factor and texture, without a texture that is the same everywhere.
+    pub(super) fn reduced<'i>(
+        &mut self,
+        input: &'i ScalarInput,
+    ) -> (f32, Option<&'i (TextureUse, usize)>) {
         let Some((texture, channel)) = &input.texture else {
-            return self.number(input.factor);
+            return (input.factor, None);
         };
         if input.factor == 0.0 {
             self.dismiss_image(texture, "its factor is 0");
-            return self.number(0.0);
+            return (0.0, None);
         }
         let [least, greatest] = self.extremes(texture, *channel, AnyFormat::LinearRgba8);
         if least == greatest {
             self.dismiss_image(texture, "its channel is the same everywhere");
-            return self.number(input.factor * least);
+            return (input.factor * least, None);
         }
-        let factor = self.number(input.factor);
-        let texel = self.channel(texture, *channel);
-        self.scalar_product(factor, texel)
+        (input.factor, input.texture.as_ref())
     }
 
     /// Alpha: an input, times the vertex alpha where meshes have one.

@@ -1,0 +1,255 @@
+//! What a scene would be without one of its effects, so that the two can be compared: the price of the effect.
+
+use residual_render::texture::srgb_table;
+
+use crate::desc::{
+    AlphaMode, ColorInput, Filter, LightKind, MaterialDesc, MetallicRoughness, Phong, ScalarInput,
+    SceneDesc, SurfaceDesc, Texels, TextureUse,
+};
+use crate::effect::Effect;
+use crate::plan::{CullingRule, PlanOptions};
+
+/// How an effect is taken out of a scene, in words; `None` for those without which there is no picture, or which
+/// others stand for (a texel's format, a wrap mode).
+pub fn instead(effect: Effect) -> Option<&'static str> {
+    Some(match effect {
+        Effect::GlossyCoat => "matte",
+        Effect::MetallicReflection => "matte, of the same colour",
+        Effect::PhongReflection => "matte",
+        Effect::ThinTransmission | Effect::Refraction => "opaque",
+        Effect::Textures => "their mean values; alpha, normal maps and emission stay",
+        Effect::BilinearFilter => "the nearest texel",
+        Effect::TextureTransforms => "coordinates as they are",
+        Effect::VertexColors => "white",
+        Effect::SmoothNormals => "flat triangles",
+        Effect::NormalMaps => "as the mesh is",
+        Effect::AlphaMasks | Effect::AlphaBlending => "opaque",
+        Effect::BackFaceCulling => "seen from both sides",
+        Effect::EmittingSurfaces => "dark",
+        Effect::TexturedEmission => "its mean",
+        Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => "off",
+        Effect::Environment => "black",
+        Effect::DiffuseReflection
+        | Effect::MixedLobes
+        | Effect::NearestFilter
+        | Effect::RepeatWrap
+        | Effect::MirrorWrap
+        | Effect::ClampWrap
+        | Effect::SrgbTexels
+        | Effect::LinearTexels
+        | Effect::FloatTexels
+        | Effect::SecondUvSet
+        | Effect::PerspectiveCamera
+        | Effect::OrthographicCamera => return None,
+    })
+}
+
+/// The scene and how it is planned, with an effect taken out as [`instead`] says; `None` where that says nothing.
+pub fn without(
+    effect: Effect,
+    scene: &SceneDesc,
+    options: &PlanOptions,
+) -> Option<(SceneDesc, PlanOptions)> {
+    instead(effect)?;
+    let (mut scene, mut options) = (scene.clone(), options.clone());
+    let mut means = Means::new(&scene);
+    match effect {
+        Effect::BilinearFilter => {
+            let textures = scene.textures.iter_mut();
+            textures.for_each(|texture| texture.filter = Filter::Nearest);
+        }
+        Effect::VertexColors => scene.meshes.iter_mut().for_each(|mesh| mesh.colors = None),
+        Effect::SmoothNormals => options.flat_normals = true,
+        Effect::BackFaceCulling => options.culling = CullingRule::None,
+        Effect::PointLights => scene
+            .lights
+            .retain(|light| !matches!(light.kind, LightKind::Point { .. })),
+        Effect::SpotLights => scene
+            .lights
+            .retain(|light| !matches!(light.kind, LightKind::Spot { .. })),
+        Effect::DirectionalLights => scene
+            .lights
+            .retain(|light| !matches!(light.kind, LightKind::Directional { .. })),
+        Effect::Environment => scene.environment = None,
+        _ => {
+            for material in &mut scene.materials {
+                change(effect, material, &mut means);
+            }
+        }
+    }
+    Some((scene, options))
+}
+
+/// Takes an effect out of a material.
+fn change(effect: Effect, material: &mut MaterialDesc, means: &mut Means) {
+    match effect {
+        Effect::NormalMaps => material.normal_map = None,
+        Effect::EmittingSurfaces => material.emission.factor = [0.0; 3],
+        Effect::TexturedEmission => means.of_color(&mut material.emission),
+        Effect::AlphaMasks if matches!(material.alpha_mode, AlphaMode::Mask(_)) => {
+            material.alpha_mode = AlphaMode::Opaque;
+        }
+        Effect::AlphaBlending if material.alpha_mode == AlphaMode::Blend => {
+            material.alpha_mode = AlphaMode::Opaque;
+        }
+        Effect::Textures => {
+            colors(material).for_each(|input| means.of_color(input));
+            scalars(material).for_each(|input| means.of_scalar(input));
+        }
+        Effect::TextureTransforms => {
+            let clear = |texture: &mut TextureUse| texture.transform = None;
+            let in_colors = colors(material).filter_map(|input| input.texture.as_mut());
+            in_colors.for_each(clear);
+            material.emission.texture.iter_mut().for_each(clear);
+            let in_scalars = scalars(material).filter_map(|input| input.texture.as_mut());
+            in_scalars.for_each(|(texture, _)| clear(texture));
+            if let Some(map) = &mut material.normal_map {
+                clear(&mut map.texture);
+            }
+            if let Some((texture, _)) = &mut material.alpha.texture {
+                clear(texture);
+            }
+        }
+        _ => change_surface(effect, &mut material.surface),
+    }
+}
+
+/// Takes a lobe out of a surface.
+fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
+    match (effect, &mut *surface) {
+        (Effect::GlossyCoat, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.specular = number(0.0);
+        }
+        // A metal's reflection is all there is of it: what stays is its colour, and no coat instead.
+        (Effect::MetallicReflection, SurfaceDesc::MetallicRoughness(surface)) => {
+            if surface.metallic.factor == 1.0 && surface.metallic.texture.is_none() {
+                surface.specular = number(0.0);
+            }
+            surface.metallic = number(0.0);
+        }
+        (
+            Effect::ThinTransmission | Effect::Refraction,
+            SurfaceDesc::MetallicRoughness(surface),
+        ) => surface.transmission = number(0.0),
+        (Effect::PhongReflection, SurfaceDesc::Phong(surface)) => {
+            surface.specular = plain([0.0; 3]);
+        }
+        (Effect::Refraction, SurfaceDesc::Dielectric { transmittance, .. }) => {
+            *surface = SurfaceDesc::Phong(Phong {
+                diffuse: plain(*transmittance),
+                specular: plain([0.0; 3]),
+                exponent: number(0.0),
+            });
+        }
+        _ => {}
+    }
+}
+
+fn number(factor: f32) -> ScalarInput {
+    ScalarInput {
+        factor,
+        texture: None,
+    }
+}
+
+fn plain(factor: [f32; 3]) -> ColorInput {
+    ColorInput {
+        factor,
+        texture: None,
+    }
+}
+
+/// The colours of a material's surface.
+fn colors(material: &mut MaterialDesc) -> impl Iterator<Item = &mut ColorInput> {
+    let inputs = match &mut material.surface {
+        SurfaceDesc::MetallicRoughness(MetallicRoughness {
+            base_color,
+            specular_color,
+            ..
+        }) => vec![base_color, specular_color],
+        SurfaceDesc::Phong(Phong {
+            diffuse, specular, ..
+        }) => vec![diffuse, specular],
+        SurfaceDesc::Dielectric { .. } => Vec::new(),
+    };
+    inputs.into_iter()
+}
+
+/// The numbers of a material's surface.
+fn scalars(material: &mut MaterialDesc) -> impl Iterator<Item = &mut ScalarInput> {
+    let inputs = match &mut material.surface {
+        SurfaceDesc::MetallicRoughness(surface) => vec![
+            &mut surface.metallic,
+            &mut surface.roughness,
+            &mut surface.specular,
+            &mut surface.transmission,
+        ],
+        SurfaceDesc::Phong(surface) => vec![&mut surface.exponent],
+        SurfaceDesc::Dielectric { .. } => Vec::new(),
+    };
+    inputs.into_iter()
+}
+
+/// Mean texels of images: linear, and with red, green and blue decoded from sRGB.
+struct Means {
+    of_textures: Vec<[[f32; 4]; 2]>,
+}
+
+impl Means {
+    fn new(scene: &SceneDesc) -> Self {
+        let of_images: Vec<_> = scene
+            .images
+            .iter()
+            .map(|image| mean(&image.texels))
+            .collect();
+        let textures = scene.textures.iter();
+        Self {
+            of_textures: textures.map(|texture| of_images[texture.image]).collect(),
+        }
+    }
+
+    fn of(&self, texture: &TextureUse) -> [[f32; 4]; 2] {
+        self.of_textures[texture.texture]
+    }
+
+    fn of_color(&mut self, input: &mut ColorInput) {
+        if let Some(texture) = input.texture.take() {
+            let [_, decoded] = self.of(&texture);
+            input.factor = [0, 1, 2].map(|k| input.factor[k] * decoded[k]);
+        }
+    }
+
+    fn of_scalar(&mut self, input: &mut ScalarInput) {
+        if let Some((texture, channel)) = input.texture.take() {
+            let [linear, _] = self.of(&texture);
+            input.factor *= linear[channel];
+        }
+    }
+}
+
+fn mean(texels: &Texels) -> [[f32; 4]; 2] {
+    let over = |values: &mut dyn Iterator<Item = [f32; 4]>| -> [f32; 4] {
+        let (mut sum, mut count) = ([0.0_f64; 4], 0.0);
+        for value in values {
+            sum = [0, 1, 2, 3].map(|k| sum[k] + f64::from(value[k]));
+            count += 1.0;
+        }
+        sum.map(|sum| (sum / count) as f32)
+    };
+    match texels {
+        Texels::RgbaF32(texels) => [over(&mut texels.iter().copied()); 2],
+        Texels::Rgba8(texels) => {
+            let table = srgb_table();
+            let linear = |texel: &[u8; 4]| texel.map(|byte| f32::from(byte) / 255.0);
+            let decoded = |texel: &[u8; 4]| {
+                let [r, g, b, a] = *texel;
+                let [r, g, b] = [r, g, b].map(|code| table[usize::from(code)]);
+                [r, g, b, f32::from(a) / 255.0]
+            };
+            [
+                over(&mut texels.iter().map(linear)),
+                over(&mut texels.iter().map(decoded)),
+            ]
+        }
+    }
+}

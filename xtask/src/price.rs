@@ -1,0 +1,290 @@
+//! The price list: what each effect of a scene costs in time, and what the image would be without it.
+//!
+//! The scene is rendered as it is and without each effect in turn, round by round, each round with random numbers of its
+//! own that all variants share: so only what an effect changes differs. Effects that are out and that other paths would
+//! have to ask about (alpha, kinds of lights) are put in, without use, and must not change the image.
+
+use std::ops::ControlFlow;
+
+use anyhow::{Context, Result};
+use residual_benches::flip::flip;
+use residual_benches::image_error::{Jackknifed, relative_mse};
+use residual_benches::measure::Estimate;
+use residual_device_cpu::plugin::LoadedRenderer;
+use residual_device_cpu::{
+    AnyBvh, CpuDevice, Interpreter, LaneCount, Progress, RenderOptions, SceneView, TileRenderer,
+};
+use residual_frontend::{hierarchy_quality, process_time};
+use residual_render::alpha::AlphaTest;
+use residual_render::program::{AlphaNode, BsdfNode, LightNode, Program, ScalarNode};
+use residual_render::surface::Attributes;
+use residual_scenegen::ablation::{instead, without};
+use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::effects::{Effect, Effects};
+use residual_scenegen::plan::{Plan, PlanOptions, plan};
+use serde_json::{Value, json};
+
+use crate::args::{InspectArgs, TierArg};
+use crate::compile::compile;
+
+/// One line of the price list.
+pub(crate) struct Price {
+    effect: Effect,
+    /// What was rendered instead.
+    instead: &'static str,
+    /// Whether the scene calls for it.
+    is_in: bool,
+    /// The part of the rendering time that goes into it: 1 − time without / time with.
+    time: Estimate,
+    /// Difference of the images.
+    flip: Jackknifed,
+    relmse: Jackknifed,
+}
+
+/// A scene that is rendered, and what came of it.
+struct Variant {
+    effect: Option<Effect>,
+    /// Whether the scene calls for the effect.
+    is_in: bool,
+    instead: &'static str,
+    plan: Plan,
+    bvh: AnyBvh,
+    renderer: Renderer,
+    /// CPU seconds, round by round.
+    seconds: Vec<f64>,
+    images: Vec<Vec<[f32; 3]>>,
+}
+
+enum Renderer {
+    Interpreted(Interpreter),
+    Compiled(LoadedRenderer),
+}
+
+impl Renderer {
+    fn get(&self) -> &dyn TileRenderer {
+        match self {
+            Self::Interpreted(renderer) => renderer,
+            Self::Compiled(renderer) => renderer,
+        }
+    }
+}
+
+/// Measures all effects for which that makes sense; the dearest first.
+pub(crate) fn prices(
+    scene: &SceneDesc,
+    options: &PlanOptions,
+    args: &InspectArgs,
+) -> Result<Vec<Price>> {
+    let mut variants = variants(scene, options, args)?;
+    let device = CpuDevice::new(0).context("starting threads")?;
+    let count = variants.len();
+    for round in 0..=args.rounds {
+        for turn in 0..count {
+            let variant = &mut variants[(round as usize + turn) % count];
+            let job = RenderOptions {
+                size: options.size,
+                samples: Some(args.spp),
+                time: None,
+                max_depth: 8,
+                seed: round,
+            };
+            let view = SceneView {
+                buffers: variant.plan.data.buffers(),
+                traversal: &variant.bvh,
+            };
+            let before = process_time();
+            let go_on = |_: Progress<'_>| ControlFlow::Continue(());
+            let (film, _) = device.render(|| variant.renderer.get(), &view, &job, go_on);
+            let used = process_time() - before;
+            // The first round warms caches.
+            if round > 0 {
+                variant.seconds.push(used.as_secs_f64());
+                variant.images.push(film.image());
+            }
+        }
+        eprintln!(
+            "measured {round} of {} rounds of {count} renders",
+            args.rounds
+        );
+    }
+    let (with, others) = variants.split_first().expect("the scene as it is");
+    let mut prices: Vec<_> = others
+        .iter()
+        .map(|other| price(with, other, options.size[0] as usize))
+        .collect();
+    prices.sort_by(|a, b| b.time.median.total_cmp(&a.time.median));
+    Ok(prices)
+}
+
+/// The scene as it is, and what it is compared with.
+fn variants(scene: &SceneDesc, options: &PlanOptions, args: &InspectArgs) -> Result<Vec<Variant>> {
+    let with = plan(scene, options)?;
+    let effects = Effects::of(&with);
+    let mut plans = vec![(None, true, "", with.clone())];
+    for &effect in Effect::ALL {
+        let Some(how) = instead(effect) else { continue };
+        if effects.has(effect) {
+            let changed = without(effect, scene, options);
+            let (scene, options) = changed.expect("there is something instead");
+            let plan = plan(&scene, &options)?;
+            // Without its last light a scene gets a sky, and is another scene.
+            let dark = is_light(effect) && plan.warnings.iter().any(|w| w.place == "lights");
+            if !dark {
+                plans.push((Some(effect), true, how, plan));
+            }
+        } else if let Some(plan) = with_unused(effect, &with) {
+            plans.push((Some(effect), false, "compiled in, without use", plan));
+        }
+    }
+    let count = plans.len();
+    let built = plans
+        .into_iter()
+        .enumerate()
+        .map(|(number, (effect, is_in, instead, plan))| {
+            let lanes = LaneCount::native();
+            let renderer = match args.tier {
+                TierArg::Interpreted => {
+                    Renderer::Interpreted(Interpreter::new(plan.structure.clone(), lanes))
+                }
+                TierArg::Auto | TierArg::Specialized => {
+                    eprintln!("renderer {} of {count}", number + 1);
+                    Renderer::Compiled(
+                        compile(&plan, lanes)
+                            .context("--tier interpreted measures without a compiler")?,
+                    )
+                }
+            };
+            let quality = hierarchy_quality(plan.data.triangle_count());
+            Ok(Variant {
+                effect,
+                is_in,
+                instead,
+                bvh: AnyBvh::build(&plan.data, lanes, quality),
+                plan,
+                renderer,
+                seconds: Vec::new(),
+                images: Vec::new(),
+            })
+        });
+    built.collect()
+}
+
+fn is_light(effect: Effect) -> bool {
+    matches!(
+        effect,
+        Effect::EmittingSurfaces
+            | Effect::PointLights
+            | Effect::SpotLights
+            | Effect::DirectionalLights
+            | Effect::Environment
+    )
+}
+
+/// The plan with an effect compiled in that nothing in the scene uses; `None` where that costs nothing, because no path
+/// would come by: materials are programs of their own.
+fn with_unused(effect: Effect, plan: &Plan) -> Option<Plan> {
+    let mut plan = plan.clone();
+    match effect {
+        Effect::AlphaBlending => plan.structure.programs.push(Program {
+            attributes: Attributes::NONE,
+            inputs: Vec::new(),
+            normal: None,
+            emission: None,
+            bsdf: BsdfNode::Black,
+            alpha: Some(AlphaNode {
+                alpha: ScalarNode::Const(0.5),
+                test: AlphaTest::Blend,
+                attributes: Attributes::NONE,
+            }),
+        }),
+        Effect::PointLights => plan.structure.lights.push(LightNode::Point),
+        Effect::SpotLights => plan.structure.lights.push(LightNode::Spot),
+        Effect::DirectionalLights => plan.structure.lights.push(LightNode::Directional),
+        _ => return None,
+    }
+    plan.materials
+        .resize(plan.structure.programs.len(), Vec::new());
+    let kinds = plan.structure.lights.len();
+    plan.lights.resize(kinds, Default::default());
+    Some(plan)
+}
+
+fn price(with: &Variant, other: &Variant, width: usize) -> Price {
+    let effect = other.effect.expect("not the scene as it is");
+    let is_in = other.is_in;
+    let saved = with.seconds.iter().zip(&other.seconds);
+    let saved = saved.map(|(with, other)| match is_in {
+        true => 1.0 - other / with,
+        false => other / with - 1.0,
+    });
+    let rounds = with.images.len();
+    let difference = |metric: &dyn Fn(&[[f32; 3]], &[[f32; 3]]) -> f64| {
+        Jackknifed::of(rounds, |used| {
+            let (reference, test) = (mean(&with.images, used), mean(&other.images, used));
+            metric(&reference, &test)
+        })
+    };
+    Price {
+        effect,
+        instead: other.instead,
+        is_in,
+        time: Estimate::of(saved.collect()),
+        flip: difference(&|a, b| flip(a, b, width)),
+        relmse: difference(&relative_mse),
+    }
+}
+
+/// The mean of some of the images.
+fn mean(images: &[Vec<[f32; 3]>], used: &dyn Fn(usize) -> bool) -> Vec<[f32; 3]> {
+    let used: Vec<_> = (0..images.len()).filter(|k| used(*k)).collect();
+    let pixel = |p: usize| {
+        [0, 1, 2].map(|c| {
+            let sum: f64 = used.iter().map(|&k| f64::from(images[k][p][c])).sum();
+            (sum / used.len() as f64) as f32
+        })
+    };
+    (0..images[0].len()).map(pixel).collect()
+}
+
+impl Price {
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "effect": self.effect.to_string(),
+            "in": self.is_in,
+            "instead": self.instead,
+            "time": self.time.median,
+            "time_ci": self.time.interval,
+            "flip": self.flip.value,
+            "flip_ci95": self.flip.ci95,
+            "relmse": self.relmse.value,
+            "relmse_ci95": self.relmse.ci95,
+        })
+    }
+}
+
+/// The list as a table.
+pub(crate) fn table(prices: &[Price]) -> String {
+    let mut text = format!(
+        "{:<22} {:>7} {:>18}  {:>17}  {:>19}  {}\n",
+        "effect", "time", "95 %", "FLIP", "relMSE", "compared with"
+    );
+    for price in prices {
+        let percent = |part: f64| format!("{:+.1} %", 100.0 * part);
+        text.push_str(&format!(
+            "{:<22} {:>7} {:>18}  {:>7.4} ± {:>7.4}  {:>8.1e} ± {:>8.1e}  {}\n",
+            price.effect.to_string(),
+            percent(price.time.median),
+            format!(
+                "{} … {}",
+                percent(price.time.interval[0]),
+                percent(price.time.interval[1])
+            ),
+            price.flip.value,
+            price.flip.ci95,
+            price.relmse.value,
+            price.relmse.ci95,
+            price.instead,
+        ));
+    }
+    text
+}
