@@ -193,11 +193,9 @@ struct PlannedMaterial {
     culled: bool,
     /// It has alpha.
     lets_through: bool,
-    /// Alpha is never enough: the surface is not there at all.
-    invisible: bool,
 }
 
-/// All materials, planned. Those that no instance uses are not.
+/// All materials, planned. Those that no instance uses, or whose surfaces are never there, are not.
 #[derive(Debug, Clone, Default)]
 struct Materials {
     programs: Vec<Program>,
@@ -212,7 +210,7 @@ impl Materials {
     fn of(&self, material: usize) -> &PlannedMaterial {
         self.planned[material]
             .as_ref()
-            .expect("materials of instanced meshes are planned")
+            .expect("materials of visible meshes are planned")
     }
 }
 
