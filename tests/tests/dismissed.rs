@@ -9,8 +9,8 @@ use residual_device_cpu::LaneCount;
 use residual_render::domain::Buffer;
 use residual_render::program::LightNode;
 use residual_scenegen::desc::{
-    AlphaMode, ColorInput, Filter, LightKind, MaterialDesc, MetallicRoughness, NormalMap, Phong,
-    Projection, ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
+    AlphaMode, ColorInput, EnvironmentDesc, Filter, LightKind, MaterialDesc, MetallicRoughness,
+    NormalMap, Phong, Projection, ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
 };
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
@@ -589,6 +589,32 @@ fn a_black_lamp_leaves_a_scene_without_light() {
         // Named once, although the scene is planned twice.
         let dismissed = effects.dismissed(Effect::EmittingSurfaces);
         assert_eq!(dismissed.len(), usize::from(!lit), "{dismissed:?}");
+    }
+}
+
+/// A black sky is darkness, not a missing light; nobody reads its texels.
+#[test]
+fn a_black_sky_is_no_light_and_no_data() {
+    for (texel, strength) in [(1.0, 0.0), (0.0, 1.0)] {
+        let mut b = Builder::new("night");
+        let mesh = sheet([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);
+        b.add(material("gray", matte([0.5; 3])), [mesh]);
+        let image = b.floats(4, 2);
+        let mut scene = b.finish();
+        scene.images[image].texels = Texels::RgbaF32(vec![[texel, texel, texel, 1.0]; 8]);
+        scene.environment = Some(EnvironmentDesc {
+            image,
+            strength,
+            rotation: 0.0,
+        });
+        let plan = planned(&scene, Binding::Structure);
+        assert!(plan.structure.lights.is_empty());
+        for buffer in [Buffer::Texels, Buffer::Environment] {
+            assert!(plan.data.buffer(buffer).is_empty(), "{buffer:?}");
+        }
+        assert!(!Effects::of(&plan).has(Effect::Environment));
+        let black = picture(&plan, 8).into_iter().flatten().all(|c| c == 0.0);
+        assert!(black, "of {texel} times {strength}");
     }
 }
 

@@ -150,7 +150,8 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let materials = materials::plan_materials(scene, options, &mut images, &mut warnings);
     let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
     let lights = lights::plan_lights(scene, &materials, &geometry, &mut images, &mut data);
-    if lights.kinds.is_empty() {
+    // A black environment is darkness that was asked for.
+    if lights.kinds.is_empty() && scene.environment.is_none() {
         let mut plan = plan(&scene.with_white_sky(), options)?;
         plan.warnings.push(Warning {
             place: "lights".to_owned(),
