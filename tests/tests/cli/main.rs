@@ -1,6 +1,8 @@
 //! The command line as a process: exit statuses, messages, files, statistics.
 
 mod bench;
+mod build;
+mod cache;
 mod emit;
 mod inspect;
 #[cfg(target_os = "linux")]
