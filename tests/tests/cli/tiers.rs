@@ -1,12 +1,12 @@
 //! Compiled renderers, and no compiler.
 
-use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
 
 use residual_tests::pictures::{first_difference, read_exr};
+use tempfile::TempDir;
 
-use super::{good, statistics, workplace};
+use super::{fails, good, statistics, stderr, workplace};
 
 /// Compiles a renderer, by way of a target directory given relative to where the command is run.
 #[cfg(unix)]
@@ -49,28 +49,52 @@ fn specialised_renderers_are_compiled_from_any_folder() {
     );
 }
 
+/// Renders without a compiler and without compiled renderers.
+fn without_compiler(folder: &TempDir, args: &[&str]) -> Output {
+    let size = ["--size", "64x48", "--threads", "1"];
+    // Enough samples for the failure to be known before the last.
+    let samples = ["--spp", "1024", "--stats", "json"];
+    Command::new(env!("CARGO_BIN_EXE_residual-tests"))
+        .current_dir(folder)
+        .env("CARGO", "no-such-cargo")
+        .env("CARGO_TARGET_DIR", folder.path().join("target"))
+        .env_remove("RESIDUAL_CACHE_DIR")
+        .args(["render", "triangle.obj"])
+        .args([&size[..], &samples, args].concat())
+        .output()
+        .unwrap()
+}
+
 /// Without a compiler the image is made all the same, and it is said why it was interpreted; a compiled renderer that
 /// was asked for outright is not replaced by another.
 #[test]
 fn a_missing_compiler_is_reported() {
     let folder = workplace();
-    let render = |tier: &str| {
-        Command::new(env!("CARGO_BIN_EXE_residual-tests"))
-            .current_dir(&folder)
-            .env("CARGO", "no-such-cargo")
-            .args(["render", "triangle.obj", "--size", "64x48", "--time", "2s"])
-            .args(["--tier", tier])
-            .output()
-            .unwrap()
-    };
-    let auto = render("auto");
-    let messages = String::from_utf8_lossy(&auto.stderr);
-    assert_eq!(auto.status.code(), Some(0), "{messages}");
+    let picture = |name: &str| read_exr(&folder.path().join(name)).unwrap().1;
+    let auto = good(without_compiler(&folder, &["-o", "auto.exr"]));
+    let messages = stderr(&auto);
     assert!(messages.contains("could not be compiled"), "{messages}");
     assert!(messages.contains("no-such-cargo"), "{messages}");
-    assert!(folder.path().join("triangle.png").exists());
+    assert_eq!(statistics(&auto)["tier"], "interpreted");
 
-    let specialized = render("specialized");
-    assert_eq!(specialized.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&specialized.stderr).contains("no-such-cargo"));
+    for (name, args) in [
+        ("tier.exr", ["--tier", "interpreted"]),
+        ("none.exr", ["--specialize", "none"]),
+    ] {
+        let output = good(without_compiler(
+            &folder,
+            &[&args[..], &["-o", name]].concat(),
+        ));
+        let stats = statistics(&output);
+        assert_eq!(stats["tier"], "interpreted");
+        assert_eq!(stats["seconds"]["compile"], 0.0);
+        // Nobody has asked for a compiler.
+        assert!(!stderr(&output).contains("compiled"), "{}", stderr(&output));
+        let difference = first_difference(&picture("auto.exr"), &picture(name));
+        assert_eq!(difference, None, "{name}");
+    }
+
+    let specialized = without_compiler(&folder, &["--tier", "specialized", "-o", "s.exr"]);
+    fails(&specialized, &["no-such-cargo", "--tier interpreted"]);
+    assert!(!folder.path().join("s.exr").exists());
 }
