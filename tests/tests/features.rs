@@ -253,18 +253,18 @@ fn any_other_factor_and_a_single_texel_call_for_an_effect() {
                 !only_factor.contains(&Effect::Textures),
                 "{effect} by {factor}"
             );
-            // A texture of one colour is a number.
-            for (texels, has_texture) in [(BLACK_BUT_ONE, true), (WHITE, false)] {
-                let found = effects(texels, |texture| make(factor, Some(texture)), |_| {});
-                assert!(found.contains(effect), "{effect} by {factor}");
-                let textures = found.contains(&Effect::Textures);
-                assert_eq!(textures, has_texture, "{effect} by {factor}");
+            for texels in [BLACK_BUT_ONE, WHITE] {
+                let textured = effects(texels, |texture| make(factor, Some(texture)), |_| {});
+                assert!(textured.contains(effect), "{effect} by {factor}");
+                // A texture of one colour is no more than a number.
+                let is_texture = textured.contains(&Effect::Textures);
+                assert_eq!(is_texture, texels != WHITE, "{effect} by {factor}");
             }
         }
     }
 }
 
-/// Alpha matters where it is not enough, be it in one texel; a mask that it never passes takes the surface away.
+/// Alpha matters where it is not enough, be it in one texel.
 #[test]
 fn a_single_texel_calls_for_alpha() {
     let alpha = |texels, mode, factor: f32| {
@@ -278,16 +278,16 @@ fn a_single_texel_calls_for_alpha() {
         };
         effects(texels, make, |_| {})
     };
-    for (mode, effect) in [
-        (AlphaMode::Blend, Effect::AlphaBlending),
-        (AlphaMode::Mask(0.999), Effect::AlphaMasks),
+    // Where no texel is enough for a mask, there is no surface to ask for its alpha.
+    for (mode, effect, little) in [
+        (AlphaMode::Blend, Effect::AlphaBlending, true),
+        (AlphaMode::Mask(0.999), Effect::AlphaMasks, false),
     ] {
-        let blends = mode == AlphaMode::Blend;
         for (texels, factor, wanted) in [
             (WHITE, 1.0, false),
             (WHITE_BUT_ONE, 1.0, true),
-            (BLACK_BUT_ONE, 1.0, blends),
-            (WHITE_BUT_ONE, 0.5, blends),
+            (BLACK_BUT_ONE, 1.0, little),
+            (WHITE_BUT_ONE, 0.5, little),
         ] {
             let found = alpha(texels, mode, factor);
             assert_eq!(

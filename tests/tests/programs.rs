@@ -72,8 +72,8 @@ fn five_hundred_materials_of_three_kinds_are_three_programs() {
     let plan = planned(&wall(), Binding::Structure);
     assert_eq!(plan.structure.programs.len(), 3);
     let text = rust::module(&plan, "Eight");
-    assert_eq!(text.matches("\nstruct Program").count(), 3);
-    assert_eq!(text.matches("/// materials/").count(), COUNT);
+    assert_eq!(text.matches("pub struct Program;").count(), 3);
+    assert_eq!(text.matches("\n/// \"tile ").count(), COUNT);
     // The thesis's binding times give each a program of its own: it is not that they are alike.
     let constants = planned(&wall(), Binding::Constants);
     assert_eq!(constants.structure.programs.len(), COUNT);

@@ -1,14 +1,16 @@
 //! `cargo xtask build`: a program that renders one scene, with the scene's data in it.
 
 use std::fs;
+use std::io::Write as _;
 use std::path::Path;
 
 use anyhow::{Context, Result};
 use residual_device_cpu::LaneCount;
-use residual_frontend::output::{write_atomically, write_executable};
+use residual_frontend::output::{check_place, write_executable};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::emit::rust;
 use residual_scenegen::plan::Plan;
+use tempfile::NamedTempFile;
 
 use crate::args::BuildArgs;
 use crate::compile::{Build, Compiler, lanes_name};
@@ -16,6 +18,7 @@ use crate::scene;
 use crate::workspace;
 
 pub(crate) fn run(args: &BuildArgs) -> Result<()> {
+    check_place(&args.output)?;
     let (plan, _) = scene::load(&args.scene)?;
     let native = match args.target_cpu {
         Some(_) => LaneCount::Eight,
@@ -23,11 +26,13 @@ pub(crate) fn run(args: &BuildArgs) -> Result<()> {
     };
     let lanes = args.lanes.unwrap_or(native);
     let data = plan.data.to_bytes();
-    let own = workspace::own_directory();
-    fs::create_dir_all(&own).with_context(|| format!("creating {}", own.display()))?;
-    let data_file = own.join(format!("standalone-{}.data", std::process::id()));
-    write_atomically(&data_file, &data)?;
-    let source = program(&plan, &args.scene.size.0, &lanes_name(lanes), &data_file);
+    let data_file = keep_for_now(&data)?;
+    let source = program(
+        &plan,
+        &args.scene.size.0,
+        &lanes_name(lanes),
+        data_file.path(),
+    );
     let flags = args
         .target_cpu
         .as_ref()
@@ -49,7 +54,6 @@ pub(crate) fn run(args: &BuildArgs) -> Result<()> {
             fs::read(made).with_context(|| format!("reading {}", made.display()))
         })
         .with_context(|| format!("building the program of {:?}", plan.name))?;
-    fs::remove_file(&data_file).with_context(|| format!("removing {}", data_file.display()))?;
     write_executable(&args.output, &program)?;
     eprintln!(
         "{}: {:.1} MiB, of which {:.1} MiB are the scene's data",
@@ -58,6 +62,18 @@ pub(crate) fn run(args: &BuildArgs) -> Result<()> {
         mib(data.len())
     );
     Ok(())
+}
+
+/// A file for the compiler to include, which goes when it is dropped.
+fn keep_for_now(data: &[u8]) -> Result<NamedTempFile> {
+    let own = workspace::own_directory();
+    let write = || {
+        fs::create_dir_all(&own)?;
+        let mut file = NamedTempFile::with_suffix_in(".data", &own)?;
+        file.write_all(data)?;
+        Ok::<_, std::io::Error>(file)
+    };
+    write().with_context(|| format!("writing to {}", own.display()))
 }
 
 fn mib(bytes: usize) -> f64 {

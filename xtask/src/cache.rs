@@ -34,12 +34,17 @@ pub(crate) struct Entry {
 }
 
 impl Cache {
-    /// The workspace's cache.
+    /// The workspace's cache, or the one in `RESIDUAL_CACHE_DIR`.
     pub(crate) fn open() -> Self {
         let mib = std::env::var("RESIDUAL_CACHE_MIB").ok();
         let mib = mib.and_then(|mib| mib.parse().ok()).unwrap_or(DEFAULT_MIB);
+        let parent = std::env::var_os("RESIDUAL_CACHE_DIR").map(PathBuf::from);
         Self {
-            directory: workspace::own_directory().join("cache"),
+            // Never the given directory itself, which may hold other things: a cache is cleared as a whole.
+            directory: parent.map_or_else(
+                || workspace::own_directory().join("cache"),
+                |parent| parent.join("residual"),
+            ),
             bound: mib << 20,
         }
     }

@@ -29,6 +29,14 @@ pub fn check(path: &Path) -> Result<()> {
         "png" | "exr" => {}
         _ => bail!("{}: images are written as .png or .exr", path.display()),
     }
+    check_place(path)
+}
+
+/// Refuses places where no file can be written.
+///
+/// # Errors
+/// If there is a directory of this name, or its own does not exist or cannot be written to.
+pub fn check_place(path: &Path) -> Result<()> {
     let directory = directory(path);
     if !directory.is_dir() {
         bail!(

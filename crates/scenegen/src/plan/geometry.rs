@@ -37,8 +37,7 @@ fn visible<'a>(
     let mut triangles = 0_u64;
     for instance in &scene.instances {
         let mesh = &scene.meshes[instance.mesh];
-        let planned = materials.of(mesh.material);
-        if planned.invisible {
+        let Some(planned) = &materials.planned[mesh.material] else {
             warnings.push(Warning {
                 place: format!("node {:?}", instance.name),
                 message: format!(
@@ -47,7 +46,7 @@ fn visible<'a>(
                 ),
             });
             continue;
-        }
+        };
         triangles += mesh.triangles.len() as u64;
         if triangles * u64::from(TRIANGLE_WORDS) > u64::from(u32::MAX) {
             return Err(PlanError::TooLarge { what: "triangles" });

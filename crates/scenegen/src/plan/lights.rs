@@ -42,14 +42,7 @@ pub(super) fn plan_lights(
         lights.add_punctual(light, radius);
     }
     if let Some(environment) = &scene.environment {
-        let image = &scene.images[environment.image];
-        lights.add_environment(
-            environment,
-            image,
-            images.place(scene, environment.image),
-            radius,
-            data,
-        );
+        lights.add_environment(scene, environment, images, radius, data);
     }
     lights.write(data);
     lights
@@ -202,12 +195,13 @@ impl PlannedLights {
 
     fn add_environment(
         &mut self,
+        scene: &SceneDesc,
         environment: &EnvironmentDesc,
-        image: &ImageDesc,
-        place: [u32; 3],
+        images: &mut Images,
         radius: f64,
         data: &mut SceneData,
     ) {
+        let image = &scene.images[environment.image];
         let weights = texel_weights(image);
         let total: f64 = weights.iter().sum();
         if total <= 0.0 || environment.strength <= 0.0 {
@@ -226,6 +220,7 @@ impl PlannedLights {
             &[],
         );
 
+        let place = images.place(scene, environment.image);
         let (sin, cos) = environment.rotation.sin_cos();
         let header = [
             place[1],

@@ -20,7 +20,7 @@ use crate::desc::{
 };
 use crate::effect::Effect;
 
-/// Plans the materials of all instanced meshes.
+/// Plans the materials of all instanced meshes that are seen.
 pub(super) fn plan_materials(
     scene: &SceneDesc,
     options: &PlanOptions,
@@ -45,14 +45,18 @@ pub(super) fn plan_materials(
             name: &desc.name,
             encloses,
         };
-        let has_normals = available.normals && !options.flat_normals;
-        let (program, invisible) = builder.program(
-            desc,
-            Attributes {
-                normals: has_normals,
-                ..available
-            },
-        );
+        let presence = builder.presence(desc);
+        if presence == Presence::Never {
+            materials
+                .dismissed
+                .extend(builder.sources.collected().dismissed);
+            continue;
+        }
+        let available = Attributes {
+            normals: available.normals && !options.flat_normals,
+            ..available
+        };
+        let program = builder.program(desc, available, presence);
         let collected = builder.sources.collected();
         let transmits = bsdf_transmits(&program.bsdf);
         let culled = options.culling == CullingRule::Gltf && !desc.double_sided && !transmits;
@@ -75,7 +79,6 @@ pub(super) fn plan_materials(
             params: materials.params.len() as u32,
             culled,
             lets_through,
-            invisible,
         });
         materials.params.extend(collected.params);
         materials.dismissed.extend(collected.dismissed);
@@ -135,6 +138,14 @@ fn bsdf_transmits(bsdf: &BsdfNode) -> bool {
     }
 }
 
+/// Where surfaces are there at all, as their alpha has it.
+#[derive(Clone, Copy, PartialEq)]
+enum Presence {
+    Always,
+    Tested(AlphaTest<f32>),
+    Never,
+}
+
 /// Builds one program.
 struct Builder<'a> {
     sources: Sources<'a>,
@@ -146,7 +157,12 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn program(&mut self, desc: &MaterialDesc, available: Attributes) -> (Program, bool) {
+    fn program(
+        &mut self,
+        desc: &MaterialDesc,
+        available: Attributes,
+        presence: Presence,
+    ) -> Program {
         let normal = desc
             .normal_map
             .as_ref()
@@ -187,19 +203,19 @@ impl Builder<'_> {
         let mut attributes = self.sources.take_attributes();
         attributes.normals |= available.normals;
         attributes.tangents |= normal.is_some();
-        let (alpha, invisible) = self.alpha(desc);
+        let alpha = match presence {
+            Presence::Always | Presence::Never => None,
+            Presence::Tested(test) => Some(self.alpha(desc, test)),
+        };
         let inputs = std::mem::take(&mut self.inputs);
-        (
-            Program {
-                attributes,
-                inputs,
-                normal,
-                emission,
-                bsdf,
-                alpha,
-            },
-            invisible,
-        )
+        Program {
+            attributes,
+            inputs,
+            normal,
+            emission,
+            bsdf,
+            alpha,
+        }
     }
 
     fn input(&mut self, name: &'static str, source: SourceNode) -> Input {
@@ -278,7 +294,7 @@ impl Builder<'_> {
         if transmission == ScalarNode::Const(0.0) {
             return self.opaque_dielectric(surface, base);
         }
-        if surface.roughness.factor > 0.0 {
+        if self.sources.known(&surface.roughness) != Some(0.0) {
             self.warnings.push(Warning {
                 place: format!("material {:?}", self.name),
                 message: "KHR_materials_transmission on a rough surface is rendered as if smooth"
@@ -300,22 +316,22 @@ impl Builder<'_> {
     fn opaque_dielectric(&mut self, surface: &MetallicRoughness, albedo: ColorNode) -> BsdfNode {
         // KHR_materials_specular and KHR_materials_ior: F0 = min(((η−1)/(η+1))²·colour, 1)·strength, F90 = strength.
         let grazing = self.sources.scalar(&surface.specular);
-        let (strength, strength_texture) = self.sources.reduced(&surface.specular);
+        let strength = self.sources.known(&surface.specular);
         let normal_incidence = ((surface.ior - 1.0) / (surface.ior + 1.0)).powi(2);
         let mut at_normal = surface.specular_color.clone();
         at_normal.factor = at_normal
             .factor
-            .map(|c| (c * normal_incidence).min(1.0) * strength);
+            .map(|c| (c * normal_incidence).min(1.0) * strength.unwrap_or(surface.specular.factor));
         let reflectance = self.sources.color(&at_normal, false);
         if grazing == ScalarNode::Const(0.0) || (is_black(&reflectance) && surface.ior == 1.0) {
             return self.diffuse(albedo);
         }
-        let reflectance = match strength_texture {
-            Some((texture, channel)) => {
+        let reflectance = match &surface.specular.texture {
+            Some((texture, channel)) if strength.is_none() => {
                 let strength = ColorNode::Gray(Box::new(self.sources.channel(texture, *channel)));
                 self.sources.color_product(reflectance, strength)
             }
-            None => reflectance,
+            _ => reflectance,
         };
         let roughness = self.sources.scalar(&surface.roughness);
         BsdfNode::Glossy {
@@ -352,49 +368,50 @@ impl Builder<'_> {
         }
     }
 
-    /// The alpha test, if it can ever fail, and whether it always does.
-    fn alpha(&mut self, desc: &MaterialDesc) -> (Option<AlphaNode>, bool) {
-        let test = match desc.alpha_mode {
-            AlphaMode::Opaque => return (None, false),
-            AlphaMode::Mask(cutoff) => AlphaTest::Mask(cutoff),
-            AlphaMode::Blend => AlphaTest::Blend,
-        };
+    /// Whether alpha can fail its test, and whether it always does.
+    fn presence(&mut self, desc: &MaterialDesc) -> Presence {
         // Filtering stays between the extremes of the texels, but for rounding.
         const ROUNDING: f32 = 1e-5;
-        if let Some([least, greatest]) = self.sources.alpha_extremes(&desc.alpha) {
-            let (effect, always, never) = match test {
-                AlphaTest::Mask(cutoff) if least == greatest => {
-                    (Effect::AlphaMasks, least >= cutoff, least < cutoff)
-                }
-                AlphaTest::Mask(cutoff) => (
-                    Effect::AlphaMasks,
-                    least >= cutoff + ROUNDING,
-                    greatest < cutoff - ROUNDING,
-                ),
-                AlphaTest::Blend => (Effect::AlphaBlending, least >= 1.0, greatest <= 0.0),
-            };
-            if always {
-                self.sources
-                    .dismiss(effect, "its alpha lets nothing through");
-            }
-            if always || never {
-                return (None, never);
-            }
+        let (effect, test) = match desc.alpha_mode {
+            AlphaMode::Opaque => return Presence::Always,
+            AlphaMode::Mask(cutoff) => (Effect::AlphaMasks, AlphaTest::Mask(cutoff)),
+            AlphaMode::Blend => (Effect::AlphaBlending, AlphaTest::Blend),
+        };
+        let Some([least, greatest]) = self.sources.alpha_extremes(&desc.alpha) else {
+            return Presence::Tested(test);
+        };
+        let (always, never) = match test {
+            AlphaTest::Mask(cutoff) if least == greatest => (least >= cutoff, least < cutoff),
+            AlphaTest::Mask(cutoff) => (
+                cutoff <= 0.0 || least >= cutoff + ROUNDING,
+                greatest < cutoff - ROUNDING,
+            ),
+            AlphaTest::Blend => (least >= 1.0, greatest <= 0.0),
+        };
+        if always {
+            self.sources
+                .dismiss(effect, "its alpha lets nothing through");
+            Presence::Always
+        } else if never {
+            self.sources
+                .dismiss(effect, "its alpha lets everything through");
+            Presence::Never
+        } else {
+            Presence::Tested(test)
         }
+    }
+
+    fn alpha(&mut self, desc: &MaterialDesc, test: AlphaTest<f32>) -> AlphaNode {
         let alpha = self.sources.alpha(&desc.alpha);
         let test = match test {
             AlphaTest::Mask(cutoff) => AlphaTest::Mask(self.sources.number(cutoff)),
             AlphaTest::Blend => AlphaTest::Blend,
         };
-        let attributes = self.sources.take_attributes();
-        (
-            Some(AlphaNode {
-                alpha,
-                test,
-                attributes,
-            }),
-            false,
-        )
+        AlphaNode {
+            alpha,
+            test,
+            attributes: self.sources.take_attributes(),
+        }
     }
 }
 

@@ -153,7 +153,8 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let materials = materials::plan_materials(scene, options, &mut images, &mut warnings);
     let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
     let lights = lights::plan_lights(scene, &materials, &geometry, &mut images, &mut data);
-    if lights.kinds.is_empty() {
+    // A black environment is darkness that was asked for.
+    if lights.kinds.is_empty() && scene.environment.is_none() {
         let mut plan = plan(&scene.with_white_sky(), options)?;
         plan.warnings.push(Warning {
             place: "lights".to_owned(),
@@ -196,11 +197,9 @@ struct PlannedMaterial {
     culled: bool,
     /// It has alpha.
     lets_through: bool,
-    /// Alpha is never enough: the surface is not there at all.
-    invisible: bool,
 }
 
-/// All materials, planned. Those that no instance uses are not.
+/// All materials, planned. Those that no instance uses, or whose surfaces are never there, are not.
 #[derive(Debug, Clone, Default)]
 struct Materials {
     programs: Vec<Program>,
@@ -215,7 +214,7 @@ impl Materials {
     fn of(&self, material: usize) -> &PlannedMaterial {
         self.planned[material]
             .as_ref()
-            .expect("materials of instanced meshes are planned")
+            .expect("materials of visible meshes are planned")
     }
 }
 

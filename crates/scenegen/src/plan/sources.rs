@@ -198,35 +198,32 @@ impl<'a> Sources<'a> {
     }
 
     fn new_scalar(&mut self, input: &ScalarInput) -> ScalarNode {
-        let (factor, texture) = self.reduced(input);
-        let factor = self.number(factor);
-        match texture {
-            None => factor,
-            Some((texture, channel)) => {
-                let texel = self.channel(texture, *channel);
-                self.scalar_product(factor, texel)
-            }
+        let known = self.known(input);
+        let Some((texture, channel)) = &input.texture else {
+            return self.number(input.factor);
+        };
+        if let Some(value) = known {
+            let reason = match input.factor == 0.0 {
+                true => "its factor is 0",
+                false => "its channel is the same everywhere",
+            };
+            self.dismiss_image(texture, reason);
+            return self.number(value);
         }
+        let factor = self.number(input.factor);
+        let texel = self.channel(texture, *channel);
+        self.scalar_product(factor, texel)
     }
 
-    /// A scalar input's factor and texture, without a texture that is the same everywhere.
-    pub(super) fn reduced<'i>(
-        &mut self,
-        input: &'i ScalarInput,
-    ) -> (f32, Option<&'i (TextureUse, usize)>) {
-        let Some((texture, channel)) = &input.texture else {
-            return (input.factor, None);
-        };
-        if input.factor == 0.0 {
-            self.dismiss_image(texture, "its factor is 0");
-            return (0.0, None);
+    /// The value of a scalar input that has the same everywhere.
+    pub(super) fn known(&mut self, input: &ScalarInput) -> Option<f32> {
+        match &input.texture {
+            Some((texture, channel)) if input.factor != 0.0 => {
+                let [least, greatest] = self.extremes(texture, *channel, AnyFormat::LinearRgba8);
+                (least == greatest).then_some(input.factor * least)
+            }
+            _ => Some(input.factor),
         }
-        let [least, greatest] = self.extremes(texture, *channel, AnyFormat::LinearRgba8);
-        if least == greatest {
-            self.dismiss_image(texture, "its channel is the same everywhere");
-            return (input.factor * least, None);
-        }
-        (input.factor, input.texture.as_ref())
     }
 
     /// Alpha: an input, times the vertex alpha where meshes have one.
@@ -242,7 +239,7 @@ impl<'a> Sources<'a> {
     /// Least and greatest alpha of a material, if that is known.
     pub(super) fn alpha_extremes(&mut self, input: &ScalarInput) -> Option<[f32; 2]> {
         if self.available.colors {
-            return None;
+            return (self.known(input) == Some(0.0)).then_some([0.0; 2]);
         }
         let texels = match &input.texture {
             Some((texture, channel)) => self.extremes(texture, *channel, AnyFormat::LinearRgba8),

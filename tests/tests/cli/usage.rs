@@ -1,0 +1,109 @@
+//! Exit statuses and messages.
+
+use std::fs;
+
+use super::{fails, good, render, run, stderr, workplace};
+
+#[test]
+fn bad_usage_ends_in_status_2() {
+    let folder = workplace();
+    let cases: &[&[&str]] = &[
+        &[],
+        &["paint"],
+        &["render"],
+        &["render", "triangle.obj", "--bogus"],
+        &["render", "triangle.obj", "--spp", "0"],
+        &["render", "triangle.obj", "--spp", "many"],
+        &["render", "triangle.obj", "--size", "0x10"],
+        &["render", "triangle.obj", "--size", "640"],
+        &["render", "triangle.obj", "--fov", "180"],
+        &["render", "triangle.obj", "--eye", "1,2"],
+        &["render", "triangle.obj", "--dir", "nan,0,1"],
+        &["render", "triangle.obj", "--time", "-3s"],
+        &["render", "triangle.obj", "--lanes", "3"],
+        &["render", "triangle.obj", "--max-depth", "0"],
+        &["render", "triangle.obj", "--camera", "0", "--fov", "40"],
+        &["render", "triangle.obj", "--env-strength", "2"],
+        &["render", "triangle.obj", "--tier", "fastest"],
+        &["inspect"],
+        &["emit", "triangle.obj"],
+    ];
+    for args in cases {
+        let output = run(&folder, args);
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{args:?}: {}",
+            stderr(&output)
+        );
+        assert!(!stderr(&output).is_empty(), "{args:?}");
+    }
+    assert!(!folder.path().join("triangle.png").exists());
+}
+
+#[test]
+fn failed_jobs_end_in_status_1_and_say_why() {
+    let folder = workplace();
+    fails(
+        &render(&folder, &["missing.glb"]),
+        &["missing.glb", "exists"],
+    );
+    fs::write(folder.path().join("scene.fbx"), "x").unwrap();
+    fails(
+        &render(&folder, &["scene.fbx"]),
+        &["scene.fbx", ".gltf, .glb or .obj"],
+    );
+    fs::write(folder.path().join("broken.gltf"), "{").unwrap();
+    fails(&render(&folder, &["broken.gltf"]), &["broken.gltf"]);
+    fails(
+        &render(&folder, &["cameras.gltf", "--camera", "middle"]),
+        &["cameras.gltf", "\"middle\"", "\"left\"", "\"right\""],
+    );
+    fails(
+        &render(&folder, &["cameras.gltf", "--camera", "2"]),
+        &["\"2\"", "\"left\""],
+    );
+    fails(
+        &render(&folder, &["triangle.obj", "--camera", "0"]),
+        &["no cameras"],
+    );
+    fails(
+        &render(&folder, &["triangle.obj", "--env", "missing.hdr"]),
+        &["missing.hdr"],
+    );
+    fails(&run(&folder, &["inspect", "missing.glb"]), &["missing.glb"]);
+    for camera in ["right", "1"] {
+        good(render(&folder, &["cameras.gltf", "--camera", camera]));
+    }
+}
+
+#[test]
+fn quiet_is_quiet() {
+    let folder = workplace();
+    let output = good(render(&folder, &["cameras.gltf", "--quiet"]));
+    assert!(output.stdout.is_empty());
+    assert!(
+        stderr(&output)
+            .lines()
+            .all(|line| line.starts_with("warning: ")),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn what_the_scene_lacks_is_said() {
+    let folder = workplace();
+    let message = stderr(&good(render(&folder, &["triangle.obj"])));
+    assert!(
+        message.contains("no camera") && message.contains("no light"),
+        "{message}"
+    );
+    let strict = render(&folder, &["missing.glb", "--strict"]);
+    fails(&strict, &["missing.glb"]);
+    let view = stderr(&good(render(
+        &folder,
+        &["cameras.gltf", "--eye", "0,0,3", "--dir", "0,0,-1"],
+    )));
+    assert!(!view.contains("no camera"), "{view}");
+}
