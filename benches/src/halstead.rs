@@ -22,10 +22,10 @@ const JOINED: [&str; 24] = [
 ];
 
 /// Keywords but `self`, `Self`, `super`, `crate`, `true` and `false`.
-const KEYWORDS: [&str; 33] = [
+const KEYWORDS: [&str; 32] = [
     "as", "async", "await", "break", "const", "continue", "dyn", "else", "enum", "extern", "fn",
     "for", "if", "impl", "in", "let", "loop", "match", "mod", "move", "mut", "pub", "ref",
-    "return", "static", "struct", "trait", "type", "union", "unsafe", "use", "where", "while",
+    "return", "static", "struct", "trait", "type", "unsafe", "use", "where", "while",
 ];
 
 impl Halstead {
