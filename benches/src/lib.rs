@@ -1,5 +1,5 @@
-//! Benchmarks of ray queries, our kernels beside Embree and obvhs on the same rays; of whole renders ([`render`]); and of
-//! shading ([`shading`]).
+//! Benchmarks of ray queries, our kernels beside Embree and obvhs on the same rays; of whole renders ([`render`]); of
+//! shading ([`shading`]); of compiling ([`compile`]). And the size of our code ([`code_size`]).
 //!
 //! ```text
 //! scene file ─ scene ─ rays ─▶ one RaySet per kind ─┐
@@ -9,10 +9,13 @@
 //! [`run::traversal`] is the whole of it: `cargo xtask bench traversal` prints what it returns. Times are CPU times of
 //! one pinned thread. Every round runs all contenders once, so that a ratio is taken between neighbours in time.
 
+pub mod code_size;
+pub mod compile;
 pub mod contender;
 pub mod embree;
 pub mod flip;
 pub mod image_error;
+pub mod halstead;
 pub mod isa;
 pub mod measure;
 pub mod ours;

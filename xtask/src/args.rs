@@ -161,6 +161,21 @@ pub(crate) enum BenchCommand {
     Render(RenderBenchArgs),
     /// Shading alone, per kind of program: specialized and interpreted, with constants and with textures
     Shading(ShadingArgs),
+    /// How soon a scene's renderer is ready: planning, emission, compiling, and from the cache. And the size of our code
+    Compile(CompileBenchArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct CompileBenchArgs {
+    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scene: Vec<PathBuf>,
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Measured rounds
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) rounds: u32,
 }
 
 #[derive(Args)]

@@ -10,13 +10,14 @@ use residual_benches::report::{build_table, trace_table};
 use residual_benches::run::{Options, SceneReport, traversal};
 
 use crate::args::{BenchCommand, IsaArg, KernelArg, PrecisionArg, RaysArg, TraversalArgs};
-use crate::{bench_render, bench_shading};
+use crate::{bench_compile, bench_render, bench_shading};
 
 pub(crate) fn run(command: &BenchCommand) -> Result<()> {
     match command {
         BenchCommand::Traversal(args) => run_traversal(args),
         BenchCommand::Render(args) => bench_render::run(args),
         BenchCommand::Shading(args) => bench_shading::run(args),
+        BenchCommand::Compile(args) => bench_compile::run(args),
     }
 }
 
@@ -34,11 +35,7 @@ fn options(args: &TraversalArgs) -> Result<Options> {
     let (rounds, side) = if args.quick { (3, 256) } else { (11, 512) };
     let is_tuning = args.quick || !args.kernel.is_empty() || !args.width.is_empty();
     Ok(Options {
-        scenes: if args.scene.is_empty() {
-            own_scenes()?
-        } else {
-            args.scene.clone()
-        },
+        scenes: scenes_or_own(&args.scene)?,
         rounds: args.rounds.map_or(rounds, |rounds| rounds as usize),
         size: args.size.map_or([side; 2], |size| size.0),
         kernels: args.kernel.iter().map(kernel).collect(),
@@ -81,8 +78,11 @@ fn rays(arg: &RaysArg) -> RayKind {
     }
 }
 
-/// The glTF files that come with the repository.
-pub(crate) fn own_scenes() -> Result<Vec<PathBuf>> {
+/// The scenes that were asked for; where none were, the glTF files that come with the repository.
+pub(crate) fn scenes_or_own(asked_for: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    if !asked_for.is_empty() {
+        return Ok(asked_for.to_vec());
+    }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
     let entries = std::fs::read_dir(&folder).with_context(|| folder.display().to_string())?;
     let mut scenes = entries

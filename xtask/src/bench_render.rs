@@ -16,15 +16,10 @@ use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, plan};
 
 use crate::args::RenderBenchArgs;
-use crate::bench::own_scenes;
+use crate::bench::scenes_or_own;
 use crate::compile::compile;
 
 pub(crate) fn run(args: &RenderBenchArgs) -> Result<()> {
-    let scenes = if args.scene.is_empty() {
-        own_scenes()?
-    } else {
-        args.scene.clone()
-    };
     let embree = match Embree::load(Isa::preferred()) {
         Ok(embree) => Some(embree),
         Err(missing) => {
@@ -32,7 +27,7 @@ pub(crate) fn run(args: &RenderBenchArgs) -> Result<()> {
             None
         }
     };
-    for scene in scenes {
+    for scene in scenes_or_own(&args.scene)? {
         let plan = load(&scene, args)?;
         let has_alpha = plan
             .structure

@@ -21,6 +21,7 @@ const SOURCE: &str = "scene.rs";
 const LIBRARY: &str = "library";
 
 /// The compiled renderers on this disk.
+#[derive(Clone, Debug)]
 pub(crate) struct Cache {
     directory: PathBuf,
     bound: u64,
@@ -46,6 +47,14 @@ impl Cache {
                 |parent| parent.join("residual"),
             ),
             bound: mib << 20,
+        }
+    }
+
+    /// A cache in a directory of its own.
+    pub(crate) fn at(directory: &Path) -> Self {
+        Self {
+            directory: directory.to_owned(),
+            ..Self::open()
         }
     }
 

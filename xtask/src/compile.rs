@@ -46,10 +46,13 @@ pub fn compile_with_line_tables(plan: &Plan, lanes: LaneCount, place: &Path) -> 
 }
 
 /// What the library of a plan is compiled from.
-fn library_source(plan: &Plan, lanes: LaneCount) -> String {
+pub(crate) fn library_source(plan: &Plan, lanes: LaneCount) -> String {
     let module = rust::module(plan, &lanes_name(lanes));
     format!("{module}\nresidual_device_cpu::export_renderer!();\n")
 }
+
+/// Line tables would be most of a library.
+const FLAGS: &[&str] = &["-Cstrip=debuginfo"];
 
 fn library_name() -> String {
     use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
@@ -82,9 +85,16 @@ pub(crate) enum Origin {
 }
 
 /// One compilation, which can be given up from another thread.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Compiler {
+    cache: Cache,
     state: Mutex<State>,
+}
+
+impl Default for Compiler {
+    fn default() -> Self {
+        Self::new(Cache::open())
+    }
 }
 
 #[derive(Debug, Default)]
@@ -108,27 +118,49 @@ pub(crate) struct Build<'a> {
 }
 
 impl Compiler {
+    /// What this one compiles is kept in `cache`.
+    pub(crate) fn new(cache: Cache) -> Self {
+        Self {
+            cache,
+            state: Mutex::default(),
+        }
+    }
+
     pub(crate) fn compile(
         &self,
         plan: &Plan,
         lanes: LaneCount,
     ) -> Result<(LoadedRenderer, Origin)> {
-        let source = library_source(plan, lanes);
+        self.compile_source(&library_source(plan, lanes), lanes)
+            .with_context(|| format!("compiling the renderer of {:?}", plan.name))
+    }
+
+    /// Compiles what [`library_source`] gave for this lane count.
+    pub(crate) fn compile_source(
+        &self,
+        source: &str,
+        lanes: LaneCount,
+    ) -> Result<(LoadedRenderer, Origin)> {
         let (file, target) = (library_name(), workspace::target_directory());
-        let compile = || -> Result<_> {
-            let cache = Cache::open();
-            let key = Cache::key(&source)?;
-            if let Some(library) = cache.find(&key, &source) {
-                // One that does not load is compiled again.
-                if let Ok(renderer) = load(&library, lanes) {
-                    return Ok((renderer, Origin::Cached));
-                }
+        let key = Cache::key(source)?;
+        if let Some(library) = self.cache.find(&key, source) {
+            // One that does not load is compiled again.
+            if let Ok(renderer) = load(&library, lanes) {
+                return Ok((renderer, Origin::Cached));
             }
-            let build = library(&source, &file, &target, &["-Cstrip=debuginfo"]);
-            let library = self.build(&build, |library| cache.keep(&key, &source, library))?;
-            Ok((load(&library, lanes)?, Origin::Compiled))
-        };
-        compile().with_context(|| format!("compiling the renderer of {:?}", plan.name))
+        }
+        let build = library(source, &file, &target, FLAGS);
+        let keep = |library: &Path| self.cache.keep(&key, source, library);
+        let library = self.build(&build, keep)?;
+        Ok((load(&library, lanes)?, Origin::Compiled))
+    }
+
+    /// Builds all that compiled scenes depend on, and a library of nothing: cargo then has to compile the next scene,
+    /// whichever came before.
+    pub(crate) fn build_dependencies(&self) -> Result<()> {
+        let (file, target) = (library_name(), workspace::target_directory());
+        self.build(&library("", &file, &target, FLAGS), |_| Ok(()))
+            .context("building what compiled scenes depend on")
     }
 
     /// Ends the compilation if it still runs: nobody waits for it any more.

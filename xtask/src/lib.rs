@@ -4,6 +4,7 @@
 
 mod args;
 mod bench;
+mod bench_compile;
 mod bench_render;
 mod bench_shading;
 mod build;
