@@ -4,7 +4,6 @@ use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 
 /// The workspace that this command line was built from.
 pub(crate) fn root() -> &'static Path {
@@ -31,10 +30,6 @@ pub(crate) fn own_directory() -> PathBuf {
 /// A hash of all that a compiled scene is made of, but its own source: compiler, instruction set, flags, the versions of
 /// libraries, and the sources of our crates.
 pub(crate) fn fingerprint() -> io::Result<u64> {
-    static KNOWN: OnceLock<u64> = OnceLock::new();
-    if let Some(known) = KNOWN.get() {
-        return Ok(*known);
-    }
     let mut hasher = DefaultHasher::new();
     env!("RESIDUAL_RUSTC").hash(&mut hasher);
     env!("RESIDUAL_TARGET_FEATURES").hash(&mut hasher);
@@ -47,7 +42,7 @@ pub(crate) fn fingerprint() -> io::Result<u64> {
     for name in ["bvh", "render", "device-cpu"] {
         hash_directory(&root().join("crates").join(name).join("src"), &mut hasher)?;
     }
-    Ok(*KNOWN.get_or_init(|| hasher.finish()))
+    Ok(hasher.finish())
 }
 
 fn hash_directory(directory: &Path, hasher: &mut impl Hasher) -> io::Result<()> {

@@ -69,14 +69,14 @@ fn compiled_renderers_are_kept_and_found_and_removed() {
     let again = good(specialized(&folder, "house.v2.obj", without_cargo));
     assert_eq!(statistics(&again)["tier"], json!("specialized"));
     assert_eq!(first_difference(&first, &picture()), None);
-    assert_eq!(entries(&folder), std::slice::from_ref(&kept));
+    assert_eq!(entries(&folder), std::slice::from_ref(kept));
 
     // A damaged one is made anew.
     fs::write(kept.join("library"), "no library").unwrap();
     fails(&specialized(&folder, "triangle.obj", without_cargo), &[]);
     good(specialized(&folder, "triangle.obj", |c| c));
     good(specialized(&folder, "triangle.obj", without_cargo));
-    assert_eq!(entries(&folder), std::slice::from_ref(&kept));
+    assert_eq!(entries(&folder), std::slice::from_ref(kept));
 
     // Where there is too much, the last stays.
     good(specialized(&folder, "cameras.gltf", |c| {
