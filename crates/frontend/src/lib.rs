@@ -1,5 +1,5 @@
-//! What every program that renders shares, be it the command line or the renderer of a single scene: [options](options),
-//! a [session](session) with progress, interruption and images on the way, [statistics](stats), [image files](output).
+//! What every program that renders shares, be it the command line or the renderer of a single scene: [`options`], a
+//! [`session`] with progress, interruption and images on the way, [statistics](stats), and image files ([`output`]).
 
 mod clock;
 pub mod options;

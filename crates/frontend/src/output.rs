@@ -20,7 +20,7 @@ pub struct Metadata {
     pub relmse: Option<f64>,
 }
 
-/// Refuses file names that [`write`] would refuse, before any work is done.
+/// Refuses file names that [`write()`] would refuse, before any work is done.
 ///
 /// # Errors
 /// If the format is none of ours, or the directory does not exist or cannot be written to.
