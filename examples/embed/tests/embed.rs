@@ -7,6 +7,7 @@ use std::process::Command;
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, RenderOptions, SceneView, TileRenderer};
 use residual_render::film::Film;
+use residual_render::sampler::AnySampler;
 use residual_scenegen::emit::rust;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, CullingRule, Plan, PlanOptions, plan};
@@ -91,7 +92,7 @@ fn data_of_another_structure_are_refused() {
             ..settings::plan_options()
         },
         PlanOptions {
-            culling: CullingRule::None,
+            sampler: AnySampler::Independent,
             ..settings::plan_options()
         },
     ];
@@ -107,7 +108,13 @@ fn data_of_another_structure_are_refused() {
         size: [32, 32],
         ..settings::plan_options()
     };
-    planned(&smaller).check_structure(Scene::STRUCTURE).unwrap();
+    let two_sided = PlanOptions {
+        culling: CullingRule::None,
+        ..settings::plan_options()
+    };
+    for options in [smaller, two_sided] {
+        planned(&options).check_structure(Scene::STRUCTURE).unwrap();
+    }
 }
 
 #[test]
