@@ -31,7 +31,9 @@ fn folder(material: &str) -> TempDir {
     )
     .unwrap();
     for (name, color) in [("red", [255, 0, 0]), ("blue", [0, 0, 255])] {
-        let pixels = image::RgbImage::from_pixel(2, 2, image::Rgb(color));
+        let mut pixels = image::RgbImage::from_pixel(2, 2, image::Rgb(color));
+        // An image of one colour would be a number, and no texture.
+        pixels.put_pixel(1, 1, image::Rgb(color.map(|c| c / 255 * 250)));
         pixels
             .save(folder.path().join(format!("{name}.png")))
             .unwrap();
