@@ -7,6 +7,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use residual_device_cpu::LaneCount;
 use residual_frontend::output::{check_place, write_executable};
+use residual_frontend::stats::mib;
 use residual_scenegen::effects::Effects;
 use residual_scenegen::emit::rust;
 use residual_scenegen::plan::Plan;
@@ -74,10 +75,6 @@ fn keep_for_now(data: &[u8]) -> Result<NamedTempFile> {
         Ok::<_, std::io::Error>(file)
     };
     write().with_context(|| format!("writing to {}", own.display()))
-}
-
-fn mib(bytes: usize) -> f64 {
-    bytes as f64 / f64::from(1 << 20)
 }
 
 /// The emitted code: the scene, and its renderer.

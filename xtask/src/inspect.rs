@@ -3,6 +3,7 @@
 use anyhow::Result;
 use residual_device_cpu::LaneCount;
 use residual_frontend::hierarchy_quality;
+use residual_frontend::stats::mib;
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{BindingTimes, Decision, Plan};
 use serde_json::{Map, Value, json};
@@ -12,13 +13,10 @@ use crate::price::{self, Price};
 use crate::scene;
 
 pub(crate) fn run(args: &InspectArgs) -> Result<()> {
-    let (plan, _) = scene::load(&args.scene)?;
+    let (plan, description, options) = scene::load_with_description(&args.scene)?;
     let effects = Effects::of(&plan);
     let prices = match args.measure {
-        true => {
-            let (scene, options) = scene::read(&args.scene)?;
-            Some(price::prices(&scene, &options, args)?)
-        }
+        true => Some(price::prices(&plan, &description, &options, args)?),
         false => None,
     };
     if args.json {
@@ -115,7 +113,7 @@ fn light_count(plan: &Plan) -> usize {
 }
 
 fn memory_mib(plan: &Plan) -> f64 {
-    plan.data.memory_bytes() as f64 / f64::from(1 << 20)
+    mib(plan.data.memory_bytes())
 }
 
 fn print(plan: &Plan, effects: &Effects) {

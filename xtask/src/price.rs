@@ -71,11 +71,12 @@ impl Renderer {
 
 /// Measures all effects for which that makes sense; the dearest first.
 pub(crate) fn prices(
+    with: &Plan,
     scene: &SceneDesc,
     options: &PlanOptions,
     args: &InspectArgs,
 ) -> Result<Vec<Price>> {
-    let mut variants = variants(scene, options, args)?;
+    let mut variants = variants(with, scene, options, args)?;
     let device = CpuDevice::new(0).context("starting threads")?;
     let count = variants.len();
     for round in 0..=args.rounds {
@@ -117,9 +118,13 @@ pub(crate) fn prices(
 }
 
 /// The scene as it is, and what it is compared with.
-fn variants(scene: &SceneDesc, options: &PlanOptions, args: &InspectArgs) -> Result<Vec<Variant>> {
-    let with = plan(scene, options)?;
-    let effects = Effects::of(&with);
+fn variants(
+    with: &Plan,
+    scene: &SceneDesc,
+    options: &PlanOptions,
+    args: &InspectArgs,
+) -> Result<Vec<Variant>> {
+    let effects = Effects::of(with);
     let mut plans = vec![(None, true, "", with.clone())];
     for &effect in Effect::ALL {
         let Some(how) = instead(effect) else { continue };
@@ -132,7 +137,7 @@ fn variants(scene: &SceneDesc, options: &PlanOptions, args: &InspectArgs) -> Res
             if !dark {
                 plans.push((Some(effect), true, how, plan));
             }
-        } else if let Some(plan) = with_unused(effect, &with) {
+        } else if let Some(plan) = with_unused(effect, with) {
             plans.push((Some(effect), false, "compiled in, without use", plan));
         }
     }
@@ -183,9 +188,9 @@ fn is_light(effect: Effect) -> bool {
 /// The plan with an effect compiled in that nothing in the scene uses; `None` where that costs nothing, because no path
 /// would come by: materials are programs of their own.
 fn with_unused(effect: Effect, plan: &Plan) -> Option<Plan> {
-    let mut plan = plan.clone();
+    let mut structure = plan.structure.clone();
     match effect {
-        Effect::AlphaBlending => plan.structure.programs.push(Program {
+        Effect::AlphaBlending => structure.programs.push(Program {
             attributes: Attributes::NONE,
             inputs: Vec::new(),
             normal: None,
@@ -197,11 +202,15 @@ fn with_unused(effect: Effect, plan: &Plan) -> Option<Plan> {
                 attributes: Attributes::NONE,
             }),
         }),
-        Effect::PointLights => plan.structure.lights.push(LightNode::Point),
-        Effect::SpotLights => plan.structure.lights.push(LightNode::Spot),
-        Effect::DirectionalLights => plan.structure.lights.push(LightNode::Directional),
+        Effect::PointLights => structure.lights.push(LightNode::Point),
+        Effect::SpotLights => structure.lights.push(LightNode::Spot),
+        Effect::DirectionalLights => structure.lights.push(LightNode::Directional),
         _ => return None,
     }
+    let mut plan = Plan {
+        structure,
+        ..plan.clone()
+    };
     plan.materials
         .resize(plan.structure.programs.len(), Vec::new());
     let kinds = plan.structure.lights.len();

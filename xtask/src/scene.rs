@@ -24,7 +24,7 @@ pub(crate) fn summary(plan: &Plan) -> SceneSummary {
 }
 
 /// Reads the scene, and says how it is to be planned.
-pub(crate) fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
+fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
     let environment = args.env.as_ref().map(|path| EnvironmentOptions {
         path: path.clone(),
         strength: args.env_strength,
@@ -71,6 +71,12 @@ pub(crate) fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
 /// Reads and plans the scene; warnings go to standard error.
 pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
     let start = Instant::now();
+    let (plan, ..) = load_with_description(args)?;
+    Ok((plan, start.elapsed()))
+}
+
+/// [`load`] with what the plan was made from.
+pub(crate) fn load_with_description(args: &SceneArgs) -> Result<(Plan, SceneDesc, PlanOptions)> {
     let (scene, options) = read(args)?;
     let plan = plan(&scene, &options).with_context(|| args.scene.display().to_string())?;
     for warning in scene.warnings.iter().chain(&plan.warnings) {
@@ -92,5 +98,5 @@ pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
             args.scene.display()
         );
     }
-    Ok((plan, start.elapsed()))
+    Ok((plan, scene, options))
 }

@@ -78,7 +78,8 @@ fn peak_memory() -> Option<f64> {
     )
 }
 
-fn mib(bytes: usize) -> f64 {
+/// Bytes in MiB.
+pub fn mib(bytes: usize) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
