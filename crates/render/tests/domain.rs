@@ -371,7 +371,8 @@ fn bsdf_words<D: Domain>(d: D, bsdf: &impl Bsdf<D>, x: &[D::U]) -> Vec<D::U> {
     let surface = floor(d);
     let value = bsdf.eval(d, &surface, wo, wi);
     let sample = bsdf.sample(d, &surface, wo, [x[6], x[7], x[8]]);
-    let vectors = [value.value, sample.wi, sample.weight]
+    let albedo = bsdf.albedo(d, &surface, wo);
+    let vectors = [value.value, sample.wi, sample.weight, albedo]
         .into_iter()
         .flat_map(vector);
     words(

@@ -2,7 +2,7 @@
 
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::Domain;
-use crate::math::Vec3;
+use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 use crate::texture::ScalarSource;
 
@@ -125,6 +125,12 @@ impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, W: ScalarSource<D>> Bsdf<D> for Mix<A, B
     }
 
     #[inline(always)]
+    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
+        let (a, b) = (self.a.albedo(d, surface, wo), self.b.albedo(d, surface, wo));
+        a.lerp(b, self.weight.scalar(d, surface))
+    }
+
+    #[inline(always)]
     fn kind(&self) -> BsdfKind {
         self.a.kind().union(self.b.kind())
     }
@@ -159,6 +165,12 @@ impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, P: ScalarSource<D>> Bsdf<D> for Sum<A, B
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         self.blend(d, surface)
             .sample(d, surface, wo, u, (&self.a, &self.b))
+    }
+
+    #[inline(always)]
+    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
+        let sum = self.a.albedo(d, surface, wo) + self.b.albedo(d, surface, wo);
+        sum.map(|c| d.min(c, d.lit(1.0)))
     }
 
     #[inline(always)]

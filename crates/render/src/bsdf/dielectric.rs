@@ -4,8 +4,8 @@ use std::marker::PhantomData;
 
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::{Bundle, Domain};
-use crate::math::Vec3;
 use crate::math::vec3::vec3;
+use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 use crate::texture::{ColorSource, ScalarSource};
 
@@ -49,6 +49,21 @@ impl<C, I, K: Interface> Dielectric<C, I, K> {
             interface: PhantomData,
         }
     }
+
+    /// Index of refraction of what lies beyond the surface relative to what lies before it.
+    #[inline(always)]
+    fn eta<D: Domain>(&self, d: D, surface: &Surface<D>) -> D::F
+    where
+        I: ScalarSource<D>,
+    {
+        let ior = self.ior.scalar(d, surface);
+        // A sheet is entered from either side.
+        if K::REFRACTS {
+            d.select(surface.front, ior, d.lit(1.0) / ior)
+        } else {
+            ior
+        }
+    }
 }
 
 /// Fresnel reflectance of unpolarised light and the quantity √(η² − 1 + cos²), η times the cosine of the
@@ -86,13 +101,7 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
     #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         let one = d.lit(1.0);
-        let ior = self.ior.scalar(d, surface);
-        // A sheet is entered from either side.
-        let eta = if K::REFRACTS {
-            d.select(surface.front, ior, one / ior)
-        } else {
-            ior
-        };
+        let eta = self.eta(d, surface);
         let (reflectance, g) = fresnel(d, wo.z, eta);
         let reflected = vec3(-wo.x, -wo.y, wo.z);
         let tint = self.transmittance.color(d, surface);
@@ -113,6 +122,14 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
             pdf: d.lit(0.0),
             delta: d.truth(true),
         }
+    }
+
+    #[inline(always)]
+    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
+        let (reflectance, _) = fresnel(d, wo.z, self.eta(d, surface));
+        self.transmittance
+            .color(d, surface)
+            .lerp(Vec3::splat(d.lit(1.0)), reflectance)
     }
 
     #[inline(always)]

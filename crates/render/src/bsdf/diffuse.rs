@@ -2,9 +2,9 @@
 
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::Domain;
-use crate::math::Vec3;
 use crate::math::vec3::vec3;
 use crate::math::warp::{FRAC_1_PI, cosine_hemisphere, cosine_hemisphere_pdf};
+use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 use crate::texture::ColorSource;
 
@@ -37,6 +37,11 @@ impl<D: Domain, C: ColorSource<D>> Bsdf<D> for Diffuse<C> {
     }
 
     #[inline(always)]
+    fn albedo(&self, d: D, surface: &Surface<D>, _: Vec3<D::F>) -> Color<D::F> {
+        self.albedo.color(d, surface)
+    }
+
+    #[inline(always)]
     fn kind(&self) -> BsdfKind {
         BsdfKind {
             scatters: true,
@@ -65,6 +70,11 @@ impl<D: Domain> Bsdf<D> for Black {
             pdf: zero,
             delta: d.truth(false),
         }
+    }
+
+    #[inline(always)]
+    fn albedo(&self, d: D, _: &Surface<D>, _: Vec3<D::F>) -> Color<D::F> {
+        Vec3::splat(d.lit(0.0))
     }
 
     #[inline(always)]

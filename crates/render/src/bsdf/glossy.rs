@@ -123,6 +123,14 @@ where
     }
 
     #[inline(always)]
+    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
+        let coat = self.coat(d, surface);
+        let fresnel = coat.fresnel(d, wo.z);
+        let base = d.lit(1.0) - fresnel.max_component(d);
+        fresnel + coat.albedo.scale(base)
+    }
+
+    #[inline(always)]
     fn kind(&self) -> BsdfKind {
         BsdfKind {
             scatters: true,

@@ -165,6 +165,11 @@ impl<D: Domain, C: ColorSource<D>, R: ScalarSource<D>> Bsdf<D> for Conductor<C, 
     }
 
     #[inline(always)]
+    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
+        conductor_fresnel(d, self.color.color(d, surface), wo.z)
+    }
+
+    #[inline(always)]
     fn kind(&self) -> BsdfKind {
         BsdfKind {
             scatters: true,

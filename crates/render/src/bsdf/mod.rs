@@ -76,6 +76,11 @@ pub trait Bsdf<D: Domain> {
     fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D>;
     /// A direction, from two numbers for the direction and one for the choice of a lobe.
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D>;
+    /// The share of light that returns towards `wo`, for denoisers: what Open Image Denoise wants as the albedo of a first
+    /// hit. Between 0 and 1 where the sources are; it needs no integral, so where the true share has no closed form it
+    /// is the Fresnel-weighted colour of a smooth surface. It may go with what is seen through a surface: a window's is
+    /// its tint.
+    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F>;
     /// What lobes there are. Folds to a constant in concrete types, so that code for the rest disappears.
     /// (A method, not an associated constant: boxed nodes need a dyn-compatible trait.)
     fn kind(&self) -> BsdfKind;

@@ -5,7 +5,7 @@ use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::Domain;
 use crate::math::elementary::{pow, sincos_turns};
 use crate::math::vec3::vec3;
-use crate::math::{Frame, Vec3};
+use crate::math::{Color, Frame, Vec3};
 use crate::surface::Surface;
 use crate::texture::{ColorSource, ScalarSource};
 
@@ -51,6 +51,11 @@ impl<D: Domain, C: ColorSource<D>, E: ScalarSource<D>> Bsdf<D> for Phong<C, E> {
             pdf,
             delta: d.truth(false),
         }
+    }
+
+    #[inline(always)]
+    fn albedo(&self, d: D, surface: &Surface<D>, _: Vec3<D::F>) -> Color<D::F> {
+        self.color.color(d, surface)
     }
 
     #[inline(always)]

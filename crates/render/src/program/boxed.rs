@@ -48,6 +48,12 @@ impl<D: Domain, T: Bsdf<D>> Bsdf<D> for Node<T> {
             || self.0.sample(d, surface, wo, u),
         )
     }
+    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
+        d.vectorize(
+            #[inline(always)]
+            || self.0.albedo(d, surface, wo),
+        )
+    }
     fn kind(&self) -> BsdfKind {
         self.0.kind()
     }
@@ -73,6 +79,10 @@ impl<D: Domain> Bsdf<D> for BoxedBsdf<'_, D> {
     #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         (**self).sample(d, surface, wo, u)
+    }
+    #[inline(always)]
+    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
+        (**self).albedo(d, surface, wo)
     }
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
@@ -237,6 +247,10 @@ impl<'a, D: Domain> Bsdf<D> for &'a (dyn Bsdf<D> + Send + Sync + 'a) {
     #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         (**self).sample(d, surface, wo, u)
+    }
+    #[inline(always)]
+    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
+        (**self).albedo(d, surface, wo)
     }
     #[inline(always)]
     fn kind(&self) -> BsdfKind {
