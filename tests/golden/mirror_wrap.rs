@@ -6,8 +6,8 @@
     reason = "one list serves all scenes"
 )]
 use render::{
-    alpha::*, bsdf::*, camera::*, domain::*, light::*, material::*, math::*, sampler::*,
-    scene::MaterialVisitor, surface::*, texture::*,
+    alpha::*, bsdf::*, camera::*, domain::*, layer::*, light::*, material::*, math::*, sampler::*,
+    scene::MaterialVisitor, surface::*, texture::*, tracer::*,
 };
 #[allow(unused_imports, reason = "one list serves all scenes")]
 use residual_device_cpu::generated::{Hit, Ray, render};
@@ -29,7 +29,10 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x0fa608f0cc2c2bf6;
+    pub const STRUCTURE: u64 = 0x142f4928d5117f31;
+
+    /// The layers that are filled beside radiance: none.
+    pub const LAYERS: Layers = Layers::from_bits(0b0);
 }
 
 const TEXTURE_0: Image<Mirror, Mirror, Bilinear, SrgbRgba8> = Image {
@@ -46,7 +49,7 @@ const TEXTURE_0: Image<Mirror, Mirror, Bilinear, SrgbRgba8> = Image {
 
 impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     type Camera = Perspective;
-    type Sampler = Sobol;
+    type Tracer = PathTracer<D, Sobol>;
     type Lights = (Point, ());
 
     #[inline(always)]
@@ -54,8 +57,15 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
         &Perspective
     }
     #[inline(always)]
-    fn sampler(&self) -> Self::Sampler {
-        Sobol
+    fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
+        PathTracer {
+            sampler: Sobol,
+            settings,
+        }
+    }
+    #[inline(always)]
+    fn layers(&self) -> Layers {
+        Self::LAYERS
     }
     // point lights: 1
     #[inline(always)]

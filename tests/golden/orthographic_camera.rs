@@ -6,8 +6,8 @@
     reason = "one list serves all scenes"
 )]
 use render::{
-    alpha::*, bsdf::*, camera::*, domain::*, light::*, material::*, math::*, sampler::*,
-    scene::MaterialVisitor, surface::*, texture::*,
+    alpha::*, bsdf::*, camera::*, domain::*, layer::*, light::*, material::*, math::*, sampler::*,
+    scene::MaterialVisitor, surface::*, texture::*, tracer::*,
 };
 #[allow(unused_imports, reason = "one list serves all scenes")]
 use residual_device_cpu::generated::{Hit, Ray, render};
@@ -29,12 +29,15 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x042d7814963682b1;
+    pub const STRUCTURE: u64 = 0x5107847c623ae560;
+
+    /// The layers that are filled beside radiance: none.
+    pub const LAYERS: Layers = Layers::from_bits(0b0);
 }
 
 impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     type Camera = Orthographic;
-    type Sampler = Sobol;
+    type Tracer = PathTracer<D, Sobol>;
     type Lights = (Point, ());
 
     #[inline(always)]
@@ -42,8 +45,15 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
         &Orthographic
     }
     #[inline(always)]
-    fn sampler(&self) -> Self::Sampler {
-        Sobol
+    fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
+        PathTracer {
+            sampler: Sobol,
+            settings,
+        }
+    }
+    #[inline(always)]
+    fn layers(&self) -> Layers {
+        Self::LAYERS
     }
     // point lights: 1
     #[inline(always)]

@@ -128,6 +128,7 @@ impl<'a> Prepared<'a> {
             time: None,
             max_depth: look.max_depth,
             seed: look.seed,
+            ..RenderOptions::default()
         };
         let go_on = |_: residual_device_cpu::Progress<'_>| ControlFlow::Continue(());
         device.render(|| renderer, &self.view(), &options, go_on).0

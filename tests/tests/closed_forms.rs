@@ -7,6 +7,7 @@ use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptio
 use residual_render::camera::AnyCamera;
 use residual_render::domain::Buffer;
 use residual_render::film::Film;
+use residual_render::layer::Layers;
 use residual_render::light::RECORD;
 use residual_render::program::{
     BsdfNode, ColorNode, EmissionNode, InputNode, LightNode, Program, SourceNode, Structure,
@@ -15,6 +16,7 @@ use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
+use residual_render::tracer::TracerNode;
 
 type Triangle = [[f32; 3]; 3];
 
@@ -84,6 +86,8 @@ fn scene(
         },
         camera: AnyCamera::Perspective,
         sampler: AnySampler::Sobol,
+        tracer: TracerNode::Path,
+        layers: Layers::NONE,
     };
     (structure, data)
 }
@@ -108,6 +112,7 @@ fn render(
         time: None,
         max_depth,
         seed: 1,
+        ..RenderOptions::default()
     };
     let (film, _) = device.render(
         || &interpreter,

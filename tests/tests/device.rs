@@ -4,6 +4,7 @@
 use std::ops::ControlFlow;
 
 use residual_device_cpu::{Counters, CpuDevice, LaneCount, RenderOptions, TileJob, TileRenderer};
+use residual_render::tracer::TracerOptions;
 use residual_scenegen::desc::{MaterialDesc, Projection, SceneDesc};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
 use residual_tests::fixtures::{self, Builder, color, material, matte, sheet};
@@ -24,11 +25,14 @@ fn planned(scene: &SceneDesc) -> Plan {
 fn job(tile: [u32; 4], samples: [u32; 2]) -> TileJob {
     TileJob {
         tile,
-        image: SIZE,
         samples,
-        max_depth: 6,
-        roulette_from: 3,
-        seed: 5,
+        tracer: TracerOptions {
+            image: SIZE,
+            seed: 5,
+            max_depth: 6,
+            roulette_from: 3,
+            reach: f32::MAX,
+        },
     }
 }
 
@@ -68,10 +72,8 @@ fn every_sample_of_every_pixel_is_taken_once() {
             let prepared = Prepared::new(&plan, lanes);
             for [width, height] in [[1, 1], [3, 5], [17, 9], [64, 64]] {
                 for samples in [1, 5] {
-                    let job = TileJob {
-                        max_depth: 1,
-                        ..job([13, 7, width, height], [3, samples])
-                    };
+                    let mut job = job([13, 7, width, height], [3, samples]);
+                    job.tracer.max_depth = 1;
                     let (colors, counters) = colors(&prepared, &job);
                     let what = format!("{} with {lanes} lanes: {job:?}", scene.name);
                     assert_eq!(
@@ -126,6 +128,7 @@ fn a_render_that_is_told_to_stop_ends_after_the_pass() {
         time: None,
         max_depth: 8,
         seed: 0,
+        ..RenderOptions::default()
     };
     for passes in [1, 3] {
         let mut told = Vec::new();

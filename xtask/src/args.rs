@@ -6,6 +6,8 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use residual_device_cpu::LaneCount;
 use residual_frontend::options::Size;
+use residual_render::layer::Layer;
+use residual_render::tracer::{DebugView, TracerNode};
 
 /// Generates a renderer for a scene, and renders it.
 #[derive(Parser)]
@@ -75,6 +77,15 @@ pub(crate) struct SceneArgs {
     /// Where random numbers come from
     #[arg(long, value_enum, default_value_t = SamplerArg::Sobol)]
     pub(crate) sampler: SamplerArg,
+    /// What is computed along rays
+    #[arg(long, value_enum, default_value_t = TracerArg::Path)]
+    pub(crate) tracer: TracerArg,
+    /// What --tracer debug shows
+    #[arg(long, value_enum, default_value_t = ViewArg::Normals)]
+    pub(crate) view: ViewArg,
+    /// Layers of an EXR beside radiance, with commas between them: albedo, normal, depth, position, sample_count
+    #[arg(long, value_name = "LAYER", value_delimiter = ',')]
+    pub(crate) aov: Vec<Layer>,
     /// When a material's numbers are known to the compiler
     #[arg(long, value_enum, default_value_t = SpecializeArg::Structure)]
     pub(crate) specialize: SpecializeArg,
@@ -314,6 +325,47 @@ pub(crate) enum SamplerArg {
     Sobol,
     /// Independent random numbers
     Independent,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TracerArg {
+    /// Light along paths
+    Path,
+    /// Ambient occlusion: how open the surroundings are within --reach
+    Ao,
+    /// What --view says of what is seen first
+    Debug,
+}
+
+impl TracerArg {
+    /// The tracer, with what a debug picture shows.
+    pub(crate) fn node(self, view: ViewArg) -> TracerNode {
+        match self {
+            Self::Path => TracerNode::Path,
+            Self::Ao => TracerNode::AmbientOcclusion,
+            Self::Debug => TracerNode::Debug(match view {
+                ViewArg::Normals => DebugView::Normals,
+                ViewArg::Uv => DebugView::TextureCoordinates,
+                ViewArg::Programs => DebugView::Programs,
+                ViewArg::Depth => DebugView::Depth,
+                ViewArg::Cost => DebugView::TraversalCost,
+            }),
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ViewArg {
+    /// Shading normals
+    Normals,
+    /// Texture coordinates
+    Uv,
+    /// A colour for each material program
+    Programs,
+    /// Distance from the eye, up to --reach
+    Depth,
+    /// Nodes and triangles that rays visit, as a heat map
+    Cost,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

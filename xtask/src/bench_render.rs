@@ -153,6 +153,7 @@ fn measure(
         time: None,
         max_depth: args.max_depth,
         seed: 0,
+        ..RenderOptions::default()
     };
     let device = CpuDevice::new(args.threads).context("starting threads")?;
     Ok(renders(

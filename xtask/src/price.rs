@@ -88,6 +88,7 @@ pub(crate) fn prices(
                 time: None,
                 max_depth: 8,
                 seed: round,
+                ..RenderOptions::default()
             };
             let view = SceneView {
                 buffers: variant.plan.data.buffers(),

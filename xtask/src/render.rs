@@ -20,7 +20,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let (plan, load) = scene::load(&args.scene)?;
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let device = CpuDevice::new(args.render.threads).context("starting threads")?;
-    let options = args.render.render_options(args.scene.size.0);
+    let options = args
+        .render
+        .render_options(args.scene.size.0, plan.default_reach());
     let tier = match args.scene.specialize {
         SpecializeArg::None => TierArg::Interpreted,
         SpecializeArg::Structure | SpecializeArg::Constants => args.tier,

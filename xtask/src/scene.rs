@@ -63,6 +63,8 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             SamplerArg::Sobol => AnySampler::Sobol,
             SamplerArg::Independent => AnySampler::Independent,
         },
+        tracer: args.tracer.node(args.view),
+        layers: args.aov.iter().copied().collect(),
         flat_normals: false,
     };
     Ok((scene, options))

@@ -7,6 +7,7 @@ use residual_device_cpu::{Counters, LaneCount, SceneView, TileJob, TileRenderer,
 use residual_render::bsdf::{Bsdf, Glossy};
 use residual_render::camera::Perspective;
 use residual_render::domain::Domain;
+use residual_render::layer::Layers;
 use residual_render::light::Point;
 use residual_render::material::{Material, Shading};
 use residual_render::math::{Color, Vec3};
@@ -17,6 +18,7 @@ use residual_render::surface::{Attributes, Surface};
 use residual_render::texture::{
     Bilinear, Bound, ColorSource, Image, LinearRgba8, Param, Repeat, ScalarSource, SrgbRgba8,
 };
+use residual_render::tracer::{PathTracer, Settings};
 
 use super::kinds::{Inputs, Kind};
 
@@ -211,14 +213,20 @@ struct Cases<'a> {
 
 impl<D: Domain> Scene<D> for Cases<'_> {
     type Camera = Perspective;
-    type Sampler = Sobol;
+    type Tracer = PathTracer<D, Sobol>;
     type Lights = (Point, ());
 
     fn camera(&self) -> &Perspective {
         &Perspective
     }
-    fn sampler(&self) -> Sobol {
-        Sobol
+    fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
+        PathTracer {
+            sampler: Sobol,
+            settings,
+        }
+    }
+    fn layers(&self) -> Layers {
+        Layers::NONE
     }
     fn lights(&self) -> &(Point, ()) {
         &(Point, ())
@@ -274,16 +282,20 @@ impl CasesRenderer {
 }
 
 impl TileRenderer for CasesRenderer {
-    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, radiance: &mut [f32]) -> Counters {
+    fn layers(&self) -> Layers {
+        Layers::NONE
+    }
+
+    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, samples: &mut [f32]) -> Counters {
         let cases = Cases {
             nodes: &self.nodes,
             attributes: black_box(TextureCoordinates.get()),
         };
         match self.lanes {
-            LaneCount::One => render_lanes!(One, scene, job, radiance, |buffers| cases),
-            LaneCount::Four => render_lanes!(Four, scene, job, radiance, |buffers| cases),
-            LaneCount::Eight => render_lanes!(Eight, scene, job, radiance, |buffers| cases),
-            LaneCount::Sixteen => render_lanes!(Sixteen, scene, job, radiance, |buffers| cases),
+            LaneCount::One => render_lanes!(One, scene, job, samples, |buffers| cases),
+            LaneCount::Four => render_lanes!(Four, scene, job, samples, |buffers| cases),
+            LaneCount::Eight => render_lanes!(Eight, scene, job, samples, |buffers| cases),
+            LaneCount::Sixteen => render_lanes!(Sixteen, scene, job, samples, |buffers| cases),
         }
     }
 }

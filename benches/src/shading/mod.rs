@@ -16,9 +16,11 @@ use std::time::Instant;
 
 use residual_device_cpu::{Interpreter, LaneCount, SceneView, TileJob, TileRenderer};
 use residual_render::camera::AnyCamera;
+use residual_render::layer::Layers;
 use residual_render::program::{LightNode, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
+use residual_render::tracer::{TracerNode, TracerOptions};
 use residual_scenegen::plan::{Binding, LightKindUse, MaterialUse, Plan};
 use serde_json::{Value, json};
 
@@ -57,6 +59,8 @@ pub fn plan() -> Plan {
             lights: vec![LightNode::Point],
             camera: AnyCamera::Perspective,
             sampler: AnySampler::Sobol,
+            tracer: TracerNode::Path,
+            layers: Layers::NONE,
         },
         data: stream::data(&params),
         materials: programs().map(uses).collect(),
@@ -65,6 +69,7 @@ pub fn plan() -> Plan {
             sources: Vec::new(),
         }],
         camera_name: "camera".to_owned(),
+        diagonal: 6.0,
         warnings: Vec::new(),
         dismissed: Vec::new(),
     }
@@ -194,11 +199,14 @@ impl<'a> Contender<'a> {
     fn run(&self, radiance: &mut [f32]) -> f64 {
         let job = TileJob {
             tile: [0, 0, SIDE, SIDE],
-            image: [SIDE, SIDE],
             samples: [0, SAMPLES],
-            max_depth: u32::MAX,
-            roulette_from: 5,
-            seed: 0,
+            tracer: TracerOptions {
+                image: [SIDE, SIDE],
+                seed: 0,
+                max_depth: u32::MAX,
+                roulette_from: 5,
+                reach: f32::MAX,
+            },
         };
         let view = SceneView {
             buffers: self.data.buffers(),

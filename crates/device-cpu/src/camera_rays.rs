@@ -2,12 +2,11 @@
 //! together.
 
 use residual_render::domain::{Lanes, MAX_LANES};
-use residual_render::sampler::SampleKey;
 use residual_render::scene::Scene;
-use residual_render::tracer::{PathTracer, Tracer};
+use residual_render::tracer::Tracer;
 
-use crate::stream::{PathStream, Place};
-use crate::tile::TileJob;
+use crate::job::TileJob;
+use crate::stream::PathStream;
 
 /// Pixels along the side of a block.
 const SIDE: usize = 4;
@@ -29,7 +28,7 @@ impl<'j> CameraRays<'j> {
         &mut self,
         d: D,
         scene: &Sc,
-        tracer: &PathTracer<Sc::Sampler>,
+        tracer: &Sc::Tracer,
         paths: &mut PathStream,
     ) {
         let job = self.job;
@@ -40,7 +39,7 @@ impl<'j> CameraRays<'j> {
         let end = places * job.samples[1] as usize;
         let mut columns = [0; MAX_LANES];
         let mut rows = [0; MAX_LANES];
-        let mut pixels = [0; MAX_LANES];
+        let mut samples = [0; MAX_LANES];
         while self.next < end && paths.has_room() {
             // Lane counts divide the pixels of a block, so all lanes have the same sample.
             let (sample, first) = (self.next / places, self.next % places);
@@ -55,17 +54,12 @@ impl<'j> CameraRays<'j> {
                 inside |= u32::from(column < width && row < height) << lane;
                 columns[lane] = rect.x + column as u32;
                 rows[lane] = rect.y + row as u32;
-                pixels[lane] = ((sample * height + row) * width + column) as u32;
+                samples[lane] = ((sample * height + row) * width + column) as u32;
             }
             let pixel = [&columns, &rows].map(|places| d.word(&places[..D::LANES]));
-            let sample = d.uint(job.samples[0] + sample as u32);
-            let key = SampleKey::new(d, pixel[0], pixel[1], sample, d.uint(job.seed));
-            let path = tracer.on_emit(d, scene.camera(), pixel, key);
-            let place = Place {
-                pixel: d.word(&pixels[..D::LANES]),
-                depth: d.uint(1),
-            };
-            paths.push(d, inside, &path, place);
+            let of_pixel = d.uint(job.samples[0] + sample as u32);
+            let path = tracer.on_emit(d, scene.camera(), pixel, of_pixel);
+            paths.push(d, inside, &path, d.word(&samples[..D::LANES]));
             self.next += D::LANES;
         }
     }

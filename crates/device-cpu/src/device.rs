@@ -6,8 +6,10 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 use residual_render::film::Film;
+use residual_render::layer::Layers;
+use residual_render::tracer::TracerOptions;
 
-use crate::tile::{Counters, SceneView, TileJob, TileRenderer};
+use crate::job::{Counters, SceneView, TileJob, TileRenderer};
 
 /// Pixels along the side of a tile. A wave of 4,096 paths with all its columns fits the second-level cache.
 const TILE_SIZE: u32 = 64;
@@ -16,6 +18,8 @@ const TILE_SIZE: u32 = 64;
 const PASS_TIME: Duration = Duration::from_millis(250);
 /// Most samples in one pass.
 const MAX_PASS: u32 = 16;
+/// The first vertex at which roulette may end a path.
+const ROULETTE_FROM: u32 = 5;
 
 /// What is to be rendered, and when to stop.
 #[derive(Clone, Debug)]
@@ -30,6 +34,34 @@ pub struct RenderOptions {
     pub max_depth: u32,
     /// Seed of the random numbers.
     pub seed: u32,
+    /// How far occluders count for ambient occlusion, and where the depth view turns black, in units of the scene.
+    pub reach: f32,
+}
+
+impl Default for RenderOptions {
+    /// 64 samples of 640 × 480 pixels, paths of at most 8 vertices.
+    fn default() -> Self {
+        Self {
+            size: [640, 480],
+            samples: Some(64),
+            time: None,
+            max_depth: 8,
+            seed: 0,
+            reach: f32::MAX,
+        }
+    }
+}
+
+impl RenderOptions {
+    fn tracer(&self) -> TracerOptions {
+        TracerOptions {
+            image: self.size,
+            seed: self.seed,
+            max_depth: self.max_depth,
+            roulette_from: ROULETTE_FROM,
+            reach: self.reach,
+        }
+    }
 }
 
 /// How far a render has come.
@@ -94,8 +126,7 @@ impl CpuDevice {
         options: &RenderOptions,
         mut progress: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> (Film, RenderReport) {
-        let [width, height] = options.size;
-        let mut film = Film::new(width, height, self.tile_size);
+        let mut film = None;
         let start = Instant::now();
         let counters = Mutex::new(Counters::default());
         let mut done = 0;
@@ -110,22 +141,22 @@ impl CpuDevice {
             }
             let count = pass.min(left);
             let renderer = renderer();
+            let layers = renderer.layers();
+            let film = film.get_or_insert_with(|| self.film(options, layers));
+            assert_eq!(film.layers(), layers, "one film, one set of layers");
             let pass_start = Instant::now();
             self.pool.install(|| {
                 film.tiles_mut().par_iter_mut().for_each(|tile| {
                     let rect = tile.rect();
                     let job = TileJob {
                         tile: [rect.x, rect.y, rect.width, rect.height],
-                        image: options.size,
                         samples: [done, count],
-                        max_depth: options.max_depth,
-                        roulette_from: 5,
-                        seed: options.seed,
+                        tracer: options.tracer(),
                     };
-                    let mut radiance = vec![0.0; rect.area() * 3 * count as usize];
-                    let mut did = renderer.render_tile(scene, &job, &mut radiance);
+                    let mut samples = vec![0.0; rect.area() * layers.stride() * count as usize];
+                    let mut did = renderer.render_tile(scene, &job, &mut samples);
                     let film_start = Instant::now();
-                    tile.add(&radiance);
+                    tile.add(&samples);
                     did.film = film_start.elapsed().as_secs_f64();
                     *counters.lock().expect("no tile panicked") += did;
                 });
@@ -134,7 +165,7 @@ impl CpuDevice {
             let so_far = Progress {
                 samples: done,
                 elapsed: start.elapsed(),
-                film: &film,
+                film,
             };
             if progress(so_far).is_break() {
                 break;
@@ -148,6 +179,12 @@ impl CpuDevice {
             elapsed: start.elapsed(),
             threads: self.pool.current_num_threads(),
         };
+        let film = film.unwrap_or_else(|| self.film(options, Layers::NONE));
         (film, report)
+    }
+
+    fn film(&self, options: &RenderOptions, layers: Layers) -> Film {
+        let [width, height] = options.size;
+        Film::new(width, height, self.tile_size, layers)
     }
 }

@@ -1,10 +1,11 @@
 //! The interpreted tier: a structure's boxed nodes, built for whatever instruction set and lane count is at hand.
 
+use residual_render::layer::Layers;
 use residual_render::program::{Interpreted, Structure};
 
+use crate::job::{Counters, SceneView, TileJob, TileRenderer};
 use crate::lanes::LaneCount;
 use crate::render_lanes;
-use crate::tile::{Counters, SceneView, TileJob, TileRenderer};
 
 /// Renders a structure without compiling it.
 #[derive(Clone, Debug)]
@@ -21,26 +22,30 @@ impl Interpreter {
 }
 
 impl TileRenderer for Interpreter {
-    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, radiance: &mut [f32]) -> Counters {
+    fn layers(&self) -> Layers {
+        self.structure.layers
+    }
+
+    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, samples: &mut [f32]) -> Counters {
         let scene_from = &self.structure;
         match self.lanes {
             LaneCount::One => {
-                render_lanes!(One, scene, job, radiance, |b| Interpreted::new(
+                render_lanes!(One, scene, job, samples, |b| Interpreted::new(
                     scene_from, b
                 ))
             }
             LaneCount::Four => {
-                render_lanes!(Four, scene, job, radiance, |b| Interpreted::new(
+                render_lanes!(Four, scene, job, samples, |b| Interpreted::new(
                     scene_from, b
                 ))
             }
             LaneCount::Eight => {
-                render_lanes!(Eight, scene, job, radiance, |b| Interpreted::new(
+                render_lanes!(Eight, scene, job, samples, |b| Interpreted::new(
                     scene_from, b
                 ))
             }
             LaneCount::Sixteen => {
-                render_lanes!(Sixteen, scene, job, radiance, |b| Interpreted::new(
+                render_lanes!(Sixteen, scene, job, samples, |b| Interpreted::new(
                     scene_from, b
                 ))
             }

@@ -70,13 +70,13 @@ macro_rules! render_lanes {
     (Four, $($rest:tt)*) => { $crate::render_lanes!(@ Lanes4, $($rest)*) };
     (Eight, $($rest:tt)*) => { $crate::render_lanes!(@ Lanes8, $($rest)*) };
     (Sixteen, $($rest:tt)*) => { $crate::render_lanes!(@ Lanes16, $($rest)*) };
-    (@ $domain:ident, $view:expr, $job:expr, $radiance:expr, |$buffers:ident| $scene:expr) => {{
+    (@ $domain:ident, $view:expr, $job:expr, $samples:expr, |$buffers:ident| $scene:expr) => {{
         use $crate::generated::fearless_simd::{Level, dispatch};
         let view: &$crate::SceneView<'_> = $view;
         let $buffers = &view.buffers;
         dispatch!(Level::new(), simd => {
             let d = $crate::render_lanes!(# $domain, simd, $buffers);
-            $crate::tile::render_tile(d, &$scene, view, $job, $radiance)
+            $crate::tile::render_tile(d, &$scene, view, $job, $samples)
         })
     }};
     (# Scalar, $simd:ident, $buffers:ident) => {{

@@ -8,8 +8,10 @@
 mod camera_rays;
 mod device;
 mod interpreter;
+mod job;
 pub mod lanes;
 pub mod plugin;
+mod samples;
 mod shade;
 mod stream;
 pub mod tile;
@@ -17,8 +19,8 @@ pub mod traversal;
 
 pub use device::{CpuDevice, Progress, RenderOptions, RenderReport};
 pub use interpreter::Interpreter;
+pub use job::{Counters, SceneView, TileJob, TileRenderer};
 pub use lanes::LaneCount;
-pub use tile::{Counters, SceneView, TileJob, TileRenderer};
 pub use traversal::{AnyBvh, Traversal};
 
 /// What emitted code needs, under stable names.

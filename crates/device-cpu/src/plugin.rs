@@ -8,13 +8,14 @@ use std::{fmt, ptr, slice};
 
 use residual_bvh::{Hit, Ray};
 use residual_render::domain::{Buffer, Buffers};
+use residual_render::layer::Layers;
 
+use crate::job::{Counters, SceneView, TileJob, TileRenderer};
 use crate::lanes::LaneCount;
-use crate::tile::{Counters, SceneView, TileJob, TileRenderer};
 use crate::traversal::{Alpha, Traversal};
 
 /// Raised whenever the layout of anything here or the meaning of buffers changes.
-const ABI_VERSION: u32 = 2;
+const ABI_VERSION: u32 = 3;
 
 /// What a library was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,16 +25,18 @@ pub struct Identity {
     lanes: u32,
     buffers: u32,
     call_size: u32,
+    layers: u32,
 }
 
 impl Identity {
-    /// The identity of renderers with this lane count that are built from these sources.
-    pub const fn new(lanes: u32) -> Self {
+    /// The identity of renderers with this lane count and these layers that are built from these sources.
+    pub const fn new(lanes: LaneCount, layers: Layers) -> Self {
         Self {
             abi_version: ABI_VERSION,
-            lanes,
+            lanes: lanes.count(),
             buffers: Buffer::COUNT as u32,
             call_size: size_of::<TileCall>() as u32,
+            layers: layers.bits(),
         }
     }
 }
@@ -139,6 +142,7 @@ struct RawTraversal {
     context: *const c_void,
     closest_hits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<Hit>, RawAlpha),
     any_hits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<bool>, RawAlpha),
+    visits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<u32>, RawAlpha),
 }
 
 impl RawTraversal {
@@ -171,10 +175,25 @@ impl RawTraversal {
                 alpha.with(|alpha| traversal.any_hits(rays.get(), occluded.get(), alpha));
             }
         }
+        /// # Safety
+        /// As for `closest_hits`.
+        unsafe extern "C" fn visits(
+            context: *const c_void,
+            rays: RawSlice<Ray>,
+            visits: RawSliceMut<u32>,
+            alpha: RawAlpha,
+        ) {
+            // SAFETY: by this function's contract.
+            unsafe {
+                let traversal = *context.cast::<&(dyn Traversal + Sync)>();
+                alpha.with(|alpha| traversal.visits(rays.get(), visits.get(), alpha));
+            }
+        }
         Self {
             context: ptr::from_ref(traversal).cast(),
             closest_hits,
             any_hits,
+            visits,
         }
     }
 }
@@ -195,6 +214,12 @@ impl Traversal for RawTraversal {
         // SAFETY: as above.
         unsafe { (self.any_hits)(self.context, RawSlice::new(rays), occluded, alpha) }
     }
+
+    fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&Alpha<'_>>) {
+        let (visits, alpha) = (RawSliceMut::new(visits), RawAlpha::new(&alpha));
+        // SAFETY: as above.
+        unsafe { (self.visits)(self.context, RawSlice::new(rays), visits, alpha) }
+    }
 }
 
 /// The arguments of a call.
@@ -203,7 +228,7 @@ pub struct TileCall {
     words: [RawSlice<u32>; Buffer::COUNT],
     traversal: RawTraversal,
     job: TileJob,
-    radiance: RawSliceMut<f32>,
+    samples: RawSliceMut<f32>,
     counters: Counters,
 }
 
@@ -243,6 +268,7 @@ impl From<libloading::Error> for LoadError {
 /// A renderer loaded from a shared library.
 pub struct LoadedRenderer {
     render_tile: RenderTile,
+    layers: Layers,
     // Keeps the code in memory.
     _library: libloading::Library,
 }
@@ -261,12 +287,16 @@ impl LoadedRenderer {
         unsafe {
             let library = libloading::Library::new(path)?;
             let identity: GetIdentity = *library.get(b"residual_identity\0")?;
-            if identity() != Identity::new(lanes.count()) {
+            let identity = identity();
+            // Layers are what the library says; the rest has to be what is expected.
+            let layers = Layers::from_bits(identity.layers);
+            if identity != Identity::new(lanes, layers) {
                 return Err(LoadError::Mismatch);
             }
             let render_tile: RenderTile = *library.get(b"residual_render_tile\0")?;
             Ok(Self {
                 render_tile,
+                layers,
                 _library: library,
             })
         }
@@ -274,15 +304,19 @@ impl LoadedRenderer {
 }
 
 impl TileRenderer for LoadedRenderer {
-    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, radiance: &mut [f32]) -> Counters {
+    fn layers(&self) -> Layers {
+        self.layers
+    }
+
+    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, samples: &mut [f32]) -> Counters {
         let mut call = TileCall {
             words: Buffer::ALL.map(|buffer| RawSlice::new(scene.buffers.get(buffer))),
             traversal: RawTraversal::new(&scene.traversal),
             job: *job,
-            radiance: RawSliceMut::new(radiance),
+            samples: RawSliceMut::new(samples),
             counters: Counters::default(),
         };
-        // SAFETY: every slice in the call outlives it, `radiance` is borrowed exclusively, and the function is the
+        // SAFETY: every slice in the call outlives it, `samples` is borrowed exclusively, and the function is the
         // library's `residual_render_tile`, whose identity was checked when it was loaded.
         unsafe { (self.render_tile)(&raw mut call) };
         call.counters
@@ -302,7 +336,7 @@ pub unsafe fn answer(call: *mut TileCall, renderer: &impl TileRenderer) {
             buffers: Buffers::new(call.words.map(|words| words.get())),
             traversal: &call.traversal,
         };
-        call.counters = renderer.render_tile(&view, &call.job, call.radiance.get());
+        call.counters = renderer.render_tile(&view, &call.job, call.samples.get());
     }
 }
 
@@ -320,13 +354,17 @@ macro_rules! compiled_scene {
         }
 
         impl $crate::TileRenderer for Compiled {
+            fn layers(&self) -> $crate::generated::render::layer::Layers {
+                $scene::LAYERS
+            }
+
             fn render_tile(
                 &self,
                 view: &$crate::SceneView<'_>,
                 job: &$crate::TileJob,
-                radiance: &mut [f32],
+                samples: &mut [f32],
             ) -> $crate::Counters {
-                $crate::render_lanes!($lanes, view, job, radiance, |buffers| $scene::new(buffers))
+                $crate::render_lanes!($lanes, view, job, samples, |buffers| $scene::new(buffers))
             }
         }
     };
@@ -339,7 +377,7 @@ macro_rules! export_renderer {
         /// What this library was made for.
         #[unsafe(no_mangle)]
         pub extern "C" fn residual_identity() -> $crate::plugin::Identity {
-            const { $crate::plugin::Identity::new(Compiled::LANES.count()) }
+            $crate::plugin::Identity::new(Compiled::LANES, $crate::TileRenderer::layers(&Compiled))
         }
 
         /// Renders a tile.

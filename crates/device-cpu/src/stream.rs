@@ -13,6 +13,8 @@ use residual_render::sampler::SampleKey;
 use residual_render::surface::{self, Ray as LaneRay};
 use residual_render::tracer::{Path, Shadow};
 
+use crate::samples::Samples;
+
 type Row = [u32; 4];
 
 /// No ray: what streams are filled with.
@@ -59,32 +61,13 @@ fn compact<D: Lanes>(bits: u32, mut len: usize, mut put: impl FnMut(usize, usize
     len
 }
 
-/// Adds a row of red, green, blue and pixel to that pixel.
-#[inline(always)]
-pub(crate) fn add_to_pixel(radiance: &mut [f32], [r, g, b, pixel]: Row) {
-    let at = pixel as usize * 3;
-    let sums = &mut radiance[at..at + 3];
-    sums[0] += f32::from_bits(r);
-    sums[1] += f32::from_bits(g);
-    sums[2] += f32::from_bits(b);
-}
-
-/// Where a path belongs.
-#[derive(Clone, Copy)]
-pub(crate) struct Place<U> {
-    /// Its pixel in the radiance of the job: sample, row, column.
-    pub(crate) pixel: U,
-    /// Number of the vertex that its ray is looking for; the first is 1.
-    pub(crate) depth: U,
-}
-
 /// What a path carries beside its ray.
 #[derive(Clone, Copy)]
 struct State {
     /// Throughput and density.
     weight: Row,
-    /// Sample key, and place.
-    place: Row,
+    /// Sample key, the index of its sample among those of the job, and depth.
+    origin: Row,
 }
 
 /// Paths between two hits.
@@ -99,7 +82,7 @@ impl PathStream {
     pub(crate) fn with_capacity(capacity: usize) -> Self {
         let nothing = State {
             weight: [0; 4],
-            place: [0; 4],
+            origin: [0; 4],
         };
         Self {
             rays: vec![NOWHERE; capacity + MAX_LANES],
@@ -129,13 +112,14 @@ impl PathStream {
         &self.rays[..self.len]
     }
 
-    /// `LANES` paths of these numbers.
+    /// The index of the sample that a path belongs to.
+    pub(crate) fn sample(&self, path: usize) -> u32 {
+        self.states[path].origin[2]
+    }
+
+    /// The paths with these `LANES` indices, and the samples that they belong to.
     #[inline(always)]
-    pub(crate) fn load<D: Lanes>(
-        &self,
-        d: D,
-        members: &[usize; MAX_LANES],
-    ) -> (Path<D>, Place<D::U>) {
+    pub(crate) fn load<D: Lanes>(&self, d: D, members: &[usize; MAX_LANES]) -> (Path<D>, D::U) {
         let real = |x: D::U| d.from_bits(x);
         let [ox, oy, oz, _] = d.columns(|lane| {
             let Ray { org: [x, y, z], .. } = self.rays[members[lane]];
@@ -147,7 +131,7 @@ impl PathStream {
             [x.to_bits(), y.to_bits(), z.to_bits(), ray.tmax.to_bits()]
         });
         let [r, g, b, pdf] = d.columns(|lane| self.states[members[lane]].weight);
-        let [key, index, pixel, depth] = d.columns(|lane| self.states[members[lane]].place);
+        let [pixel, index, sample, depth] = d.columns(|lane| self.states[members[lane]].origin);
         let path = Path {
             ray: LaneRay {
                 org: vec3(real(ox), real(oy), real(oz)),
@@ -156,14 +140,15 @@ impl PathStream {
             },
             throughput: vec3(real(r), real(g), real(b)),
             pdf: real(pdf),
-            key: SampleKey { pixel: key, index },
+            key: SampleKey { pixel, index },
+            depth,
         };
-        (path, Place { pixel, depth })
+        (path, sample)
     }
 
-    /// Appends the paths whose bit is set.
+    /// Appends the paths whose bit is set, which belong to these samples.
     #[inline(always)]
-    pub(crate) fn push<D: Lanes>(&mut self, d: D, bits: u32, path: &Path<D>, place: Place<D::U>) {
+    pub(crate) fn push<D: Lanes>(&mut self, d: D, bits: u32, path: &Path<D>, sample: D::U) {
         let [orgs, dirs] = ray_rows(d, &path.ray);
         let [r, g, b] = [path.throughput.x, path.throughput.y, path.throughput.z];
         let weights = d.rows([
@@ -172,12 +157,12 @@ impl PathStream {
             d.to_bits(b),
             d.to_bits(path.pdf),
         ]);
-        let places = d.rows([path.key.pixel, path.key.index, place.pixel, place.depth]);
+        let origins = d.rows([path.key.pixel, path.key.index, sample, path.depth]);
         self.len = compact::<D>(bits, self.len, |at, lane| {
             self.rays[at] = ray_of_rows(orgs[lane], dirs[lane]);
             self.states[at] = State {
                 weight: weights[lane],
-                place: places[lane],
+                origin: origins[lane],
             };
         });
     }
@@ -186,7 +171,7 @@ impl PathStream {
 /// Shadow rays with what they are worth.
 pub(crate) struct ShadowStream {
     rays: Vec<Ray>,
-    /// Contribution, and pixel.
+    /// Contribution, and the index of the sample it belongs to.
     worth: Vec<Row>,
     occluded: Vec<bool>,
     len: usize,
@@ -218,22 +203,22 @@ impl ShadowStream {
         (&self.rays[..self.len], &mut self.occluded[..self.len])
     }
 
-    /// Adds what the rays that are not occluded are worth to their pixels.
-    pub(crate) fn add_to(&self, radiance: &mut [f32]) {
+    /// Adds what the rays that are not occluded are worth to their samples.
+    pub(crate) fn add_to(&self, samples: &mut Samples<'_>) {
         for (&row, &occluded) in self.worth.iter().zip(&self.occluded[..self.len]) {
             if !occluded {
-                add_to_pixel(radiance, row);
+                samples.add_row(row);
             }
         }
     }
 
     /// Appends the rays whose bit is set.
     #[inline(always)]
-    pub(crate) fn push<D: Lanes>(&mut self, d: D, bits: u32, shadow: &Shadow<D>, pixel: D::U) {
+    pub(crate) fn push<D: Lanes>(&mut self, d: D, bits: u32, shadow: &Shadow<D>, sample: D::U) {
         let [orgs, dirs] = ray_rows(d, &shadow.ray);
         let worth = &shadow.contribution;
         let [r, g, b] = [worth.x, worth.y, worth.z];
-        let worth = d.rows([d.to_bits(r), d.to_bits(g), d.to_bits(b), pixel]);
+        let worth = d.rows([d.to_bits(r), d.to_bits(g), d.to_bits(b), sample]);
         self.len = compact::<D>(bits, self.len, |at, lane| {
             self.rays[at] = ray_of_rows(orgs[lane], dirs[lane]);
             self.worth[at] = worth[lane];

@@ -3,117 +3,16 @@
 use std::time::Instant;
 
 use residual_bvh::{Hit, Ray};
-use residual_render::domain::{Buffer, Buffers, Lanes};
-use residual_render::film::TileRect;
+use residual_render::domain::{Buffer, Lanes};
 use residual_render::scene::Scene;
-use residual_render::tracer::PathTracer;
+use residual_render::tracer::{Settings, Tracer};
 
 use crate::camera_rays::CameraRays;
-use crate::shade::{Shade, shade_misses};
+use crate::job::{Counters, SceneView, TileJob};
+use crate::samples::Samples;
+use crate::shade::Shading;
 use crate::stream::{PathStream, ShadowStream, SortedHits};
-use crate::traversal::{Alpha, Traversal};
-
-/// What is to be rendered.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub struct TileJob {
-    /// x, y, width and height of the tile.
-    pub tile: [u32; 4],
-    /// Width and height of the image.
-    pub image: [u32; 2],
-    /// Number of the first sample, and how many.
-    pub samples: [u32; 2],
-    /// Most vertices a path may have; 1 is emission seen directly.
-    pub max_depth: u32,
-    /// First vertex at which Russian roulette may end a path.
-    pub roulette_from: u32,
-    /// Seed of the random numbers.
-    pub seed: u32,
-}
-
-impl TileJob {
-    /// The tile as a rectangle.
-    pub fn rect(&self) -> TileRect {
-        let [x, y, width, height] = self.tile;
-        TileRect {
-            x,
-            y,
-            width,
-            height,
-        }
-    }
-}
-
-/// What was done, and how long each stage took.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)]
-pub struct Counters {
-    /// Rays from the camera.
-    pub camera_rays: u64,
-    /// Rays that continue paths.
-    pub bounce_rays: u64,
-    /// Rays towards lights.
-    pub shadow_rays: u64,
-    /// Thread seconds: making camera rays.
-    pub emit: f64,
-    /// Thread seconds: closest hits of camera rays.
-    pub trace_camera: f64,
-    /// Thread seconds: closest hits of continued paths.
-    pub trace_bounce: f64,
-    /// Thread seconds: occlusion, and adding what is not occluded.
-    pub trace_shadow: f64,
-    /// Thread seconds: sorting by program.
-    pub sort: f64,
-    /// Thread seconds: shading, and writing down the paths and shadow rays that go on, which compacts them.
-    pub shade: f64,
-    /// Thread seconds: adding samples to the film.
-    pub film: f64,
-}
-
-impl Counters {
-    /// The stages with their thread seconds (thesis, Figure 3.3).
-    pub fn stages(&self) -> [(&'static str, f64); 7] {
-        [
-            ("emit", self.emit),
-            ("trace_camera", self.trace_camera),
-            ("trace_bounce", self.trace_bounce),
-            ("trace_shadow", self.trace_shadow),
-            ("sort", self.sort),
-            ("shade", self.shade),
-            ("film", self.film),
-        ]
-    }
-}
-
-impl std::ops::AddAssign for Counters {
-    fn add_assign(&mut self, o: Self) {
-        self.camera_rays += o.camera_rays;
-        self.bounce_rays += o.bounce_rays;
-        self.shadow_rays += o.shadow_rays;
-        self.emit += o.emit;
-        self.trace_camera += o.trace_camera;
-        self.trace_bounce += o.trace_bounce;
-        self.trace_shadow += o.trace_shadow;
-        self.sort += o.sort;
-        self.shade += o.shade;
-        self.film += o.film;
-    }
-}
-
-/// A scene's data, ready to be rendered.
-#[derive(Clone, Copy)]
-pub struct SceneView<'a> {
-    /// Its buffers.
-    pub buffers: Buffers<'a>,
-    /// What traces rays against its triangles.
-    pub traversal: &'a (dyn Traversal + Sync),
-}
-
-/// Renders tiles of one scene structure: interpreted, compiled in, or loaded.
-pub trait TileRenderer: Sync {
-    /// Renders the job into `radiance[sample][row][column][channel]`, which is overwritten.
-    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, radiance: &mut [f32]) -> Counters;
-}
+use crate::traversal::Alpha;
 
 /// Adds the time since the last lap to a counter.
 struct Stopwatch(Instant);
@@ -137,17 +36,14 @@ pub fn render_tile<D, Sc>(
     scene: &Sc,
     view: &SceneView<'_>,
     job: &TileJob,
-    radiance: &mut [f32],
+    samples: &mut [f32],
 ) -> Counters
 where
     D: Lanes,
     Sc: Scene<D>,
 {
-    let tracer = PathTracer {
-        sampler: scene.sampler(),
-        size: job.image,
-        roulette_from: job.roulette_from,
-    };
+    let (lights, layers) = (scene.lights(), scene.layers());
+    let tracer = scene.tracer(Settings::new(d, &job.tracer));
     let covers = |ray: &Ray, hit: &Hit| scene.covers(ray, hit);
     let alpha: Option<&Alpha<'_>> = if scene.has_alpha() {
         Some(&covers)
@@ -162,7 +58,7 @@ where
     let mut hits = SortedHits::with_capacity(STREAM, scene.programs());
     let mut counters = Counters::default();
     let mut clock = Stopwatch(Instant::now());
-    radiance.fill(0.0);
+    let mut samples = Samples::new(samples, layers);
 
     loop {
         let carried = paths.len();
@@ -182,6 +78,14 @@ where
         view.traversal
             .closest_hits(fresh, hits.answers(carried..all), alpha);
         counters.camera_rays += fresh.len() as u64;
+        if let Some(map) = tracer.cost_map() {
+            let mut visits = vec![0; fresh.len()];
+            view.traversal.visits(fresh, &mut visits, alpha);
+            for (path, visits) in (carried..).zip(visits) {
+                let [r, g, b] = map.color(visits).map(f32::to_bits);
+                samples.add_row([r, g, b, paths.sample(path)]);
+            }
+        }
         clock.lap(&mut counters.trace_camera);
         hits.sort(all, program_of);
         clock.lap(&mut counters.sort);
@@ -189,27 +93,22 @@ where
         // Shading, program by program.
         next.clear();
         shadows.clear();
-        let misses = hits.range(scene.programs());
-        let lights = scene.lights();
-        shade_misses(d, &tracer, lights, (&paths, &hits), misses, radiance);
+        let mut shading = Shading {
+            d,
+            tracer: &tracer,
+            lights,
+            layers,
+            paths: &paths,
+            hits: &hits,
+            next: &mut next,
+            shadows: &mut shadows,
+            samples: &mut samples,
+        };
+        shading.misses(hits.range(scene.programs()));
         for program in 0..scene.programs() {
             let range = hits.range(program);
             if !range.is_empty() {
-                scene.visit_material(
-                    program,
-                    Shade {
-                        d,
-                        tracer: &tracer,
-                        lights,
-                        range,
-                        paths: &paths,
-                        hits: &hits,
-                        max_depth: job.max_depth,
-                        next: &mut next,
-                        shadows: &mut shadows,
-                        radiance,
-                    },
-                );
+                scene.visit_material(program, shading.of(range));
             }
         }
         clock.lap(&mut counters.shade);
@@ -217,7 +116,7 @@ where
         // Occlusion.
         let (rays, occluded) = shadows.rays_and_answers();
         view.traversal.any_hits(rays, occluded, alpha);
-        shadows.add_to(radiance);
+        shadows.add_to(&mut samples);
         counters.shadow_rays += shadows.len() as u64;
         clock.lap(&mut counters.trace_shadow);
         std::mem::swap(&mut paths, &mut next);

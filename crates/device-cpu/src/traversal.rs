@@ -22,6 +22,12 @@ pub trait Traversal {
 
     /// Whether each ray hits anything.
     fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>);
+
+    /// How many nodes and packets of triangles are visited until the nearest hit of each ray is found; 0 where the
+    /// traversal does not count.
+    fn visits(&self, _rays: &[Ray], visits: &mut [u32], _alpha: Option<&Alpha<'_>>) {
+        visits.fill(0);
+    }
 }
 
 /// A hierarchy of the width that suits the machine.

@@ -4,10 +4,12 @@
 mod clock;
 pub mod options;
 pub mod output;
+mod rendered;
 pub mod session;
 pub mod stats;
 
 pub use clock::process_time;
+pub use rendered::Rendered;
 
 use residual_bvh::BuildQuality;
 

@@ -27,6 +27,10 @@ pub struct RenderArgs {
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
+    /// How far occluders count for ambient occlusion, and where the depth view turns black, in units of the scene
+    /// [default: a tenth of the scene's diagonal, and all of it]
+    #[arg(long, value_name = "DISTANCE", value_parser = distance)]
+    pub reach: Option<f32>,
     /// Threads; 0 is one for each processor
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
@@ -39,14 +43,15 @@ pub struct RenderArgs {
 }
 
 impl RenderArgs {
-    /// What the device is told.
-    pub fn render_options(&self, size: [u32; 2]) -> RenderOptions {
+    /// What the device is told; `reach` is used where none is asked for.
+    pub fn render_options(&self, size: [u32; 2], reach: f32) -> RenderOptions {
         RenderOptions {
             size,
             samples: self.spp.or(self.time.is_none().then_some(DEFAULT_SAMPLES)),
             time: self.time,
             max_depth: self.max_depth,
             seed: self.seed,
+            reach: self.reach.unwrap_or(reach),
         }
     }
 }
@@ -88,6 +93,12 @@ impl FromStr for Size {
     }
 }
 
+fn distance(text: &str) -> Result<f32, String> {
+    let distance = text.parse::<f32>().ok();
+    let distance = distance.filter(|distance| *distance > 0.0 && distance.is_finite());
+    distance.ok_or_else(|| "expected a distance above 0".to_owned())
+}
+
 fn duration(text: &str) -> Result<Duration, String> {
     let units = [
         ("ms", 1e-3),
@@ -119,6 +130,8 @@ mod tests {
         assert!("0x480".parse::<Size>().is_err() && "640".parse::<Size>().is_err());
         assert_eq!(duration("500ms"), Ok(Duration::from_millis(500)));
         assert_eq!(duration("2m"), Ok(Duration::from_secs(120)));
+        assert_eq!(distance("0.5"), Ok(0.5));
+        assert!(distance("0").is_err() && distance("inf").is_err() && distance("far").is_err());
         assert!(duration("-1s").is_err() && duration("soon").is_err());
     }
 }

@@ -136,14 +136,22 @@ fn png(film: &Film) -> Result<Vec<u8>> {
     Ok(bytes.into_inner())
 }
 
+/// Radiance as `R`, `G`, `B`; each layer's channels behind its name and a dot, as compositors expect them.
 fn open_exr(film: &Film, metadata: &Metadata) -> Result<Vec<u8>> {
-    let pixels = film.image();
-    let width = film.width() as usize;
-    let size = (width, film.height() as usize);
-    let channels = SpecificChannels::rgb(|place: Vec2<usize>| {
-        let [r, g, b] = pixels[place.y() * width + place.x()];
-        (r, g, b)
+    let size = (film.width() as usize, film.height() as usize);
+    let image = film.image();
+    let radiance = ["R", "G", "B"].into_iter().enumerate().map(|(k, name)| {
+        let values = image.iter().map(|rgb| rgb[k]).collect();
+        AnyChannel::new(name, FlatSamples::F32(values))
     });
+    let mut channels: SmallVec<[_; 4]> = radiance.collect();
+    for layer in film.layers().iter() {
+        for (k, channel) in layer.channels().iter().enumerate() {
+            let values = film.channel(layer, k).expect("the film has its layers");
+            let name = format!("{layer}.{channel}");
+            channels.push(AnyChannel::new(name.as_str(), FlatSamples::F32(values)));
+        }
+    }
     let mut attributes = LayerAttributes::named("");
     attributes.software_name = Text::new_or_none(concat!("Residual ", env!("CARGO_PKG_VERSION")));
     let mut comment = format!(
@@ -154,7 +162,8 @@ fn open_exr(film: &Film, metadata: &Metadata) -> Result<Vec<u8>> {
         comment.push_str(&format!(" relmse={relmse:.3e}"));
     }
     attributes.comments = Text::new_or_none(&comment);
-    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
+    let channels = AnyChannels::sort(channels);
+    let layer = exr::prelude::Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
     let mut bytes = Cursor::new(Vec::new());
     Image::from_layer(layer).write().to_buffered(&mut bytes)?;
     Ok(bytes.into_inner())
@@ -164,9 +173,10 @@ fn open_exr(film: &Film, metadata: &Metadata) -> Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use residual_render::layer::{Layer, Layers};
 
     fn film() -> Film {
-        let mut film = Film::new(3, 2, 64);
+        let mut film = Film::new(3, 2, 64, Layers::NONE);
         film.tiles_mut()[0].add(&(0..18).map(|i| i as f32 / 17.0).collect::<Vec<_>>());
         film
     }
@@ -202,6 +212,45 @@ mod tests {
             },
         );
         image.unwrap().layer_data.channel_data.pixels
+    }
+
+    #[test]
+    fn layers_are_channels_of_an_exr() {
+        let layers = Layers::NONE.with(Layer::Albedo).with(Layer::Depth);
+        let mut film = Film::new(2, 1, 64, layers);
+        let samples: Vec<_> = (0..14).map(|i| i as f32).collect();
+        film.tiles_mut()[0].add(&samples);
+        let metadata = Metadata {
+            scene: "s".into(),
+            samples: 1,
+            seconds: 1.0,
+            relmse: None,
+        };
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.exr");
+        write(&path, &film, &metadata).unwrap();
+        let image = read_first_flat_layer_from_file(&path).unwrap();
+        let channels: Vec<_> = image
+            .layer_data
+            .channel_data
+            .list
+            .iter()
+            .map(|channel| {
+                let values: Vec<_> = channel.sample_data.values_as_f32().collect();
+                (channel.name.to_string(), values)
+            })
+            .collect();
+        let expected = [
+            ("B", [2.0, 9.0]),
+            ("G", [1.0, 8.0]),
+            ("R", [0.0, 7.0]),
+            ("albedo.B", [5.0, 12.0]),
+            ("albedo.G", [4.0, 11.0]),
+            ("albedo.R", [3.0, 10.0]),
+            ("depth.Z", [6.0, 13.0]),
+        ];
+        let expected = expected.map(|(name, values)| (name.to_owned(), values.to_vec()));
+        assert_eq!(channels, expected);
     }
 
     #[test]

@@ -9,14 +9,13 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
-use residual_device_cpu::{
-    CpuDevice, Progress, RenderOptions, RenderReport, SceneView, TileRenderer,
-};
+use residual_device_cpu::{CpuDevice, Progress, RenderOptions, SceneView, TileRenderer};
 use residual_render::film::Film;
 
 use crate::options::{RenderArgs, StatsFormat};
 use crate::output::{self, Metadata};
 use crate::process_time;
+use crate::rendered::Rendered;
 use crate::stats::Statistics;
 
 /// Images on the way are written no more often than that so large a part of the time goes into them.
@@ -29,18 +28,6 @@ pub struct Session<'a> {
     stop: Arc<AtomicBool>,
     /// When the session began.
     pub start: Instant,
-}
-
-/// What a render yields.
-pub struct Rendered {
-    /// The image.
-    pub film: Film,
-    /// What was done.
-    pub report: RenderReport,
-    /// CPU time of this process meanwhile.
-    pub cpu: Duration,
-    /// From the start of the session to the first image file.
-    pub first_image: Duration,
 }
 
 impl<'a> Session<'a> {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use crate::process_time;
-use crate::session::Rendered;
+use crate::rendered::Rendered;
 
 /// What statistics say about the scene.
 #[derive(Clone, Debug, Default)]

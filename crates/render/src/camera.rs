@@ -37,11 +37,7 @@ impl<D: Domain> Camera<D> for Perspective {
     #[inline(always)]
     fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
         let dir = (vector(d, 9) + on_film(d, film)).normalize(d);
-        Ray {
-            org: vector(d, 0),
-            dir,
-            tmax: d.lit(f64::from(f32::MAX)),
-        }
+        Ray::unbounded(d, vector(d, 0), dir)
     }
 }
 
@@ -49,11 +45,7 @@ impl<D: Domain> Camera<D> for Orthographic {
     #[inline(always)]
     fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
         let org = vector(d, 0) + on_film(d, film);
-        Ray {
-            org,
-            dir: vector(d, 9).normalize(d),
-            tmax: d.lit(f64::from(f32::MAX)),
-        }
+        Ray::unbounded(d, org, vector(d, 9).normalize(d))
     }
 }
 

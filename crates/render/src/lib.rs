@@ -6,6 +6,7 @@ pub mod bsdf;
 pub mod camera;
 pub mod domain;
 pub mod film;
+pub mod layer;
 pub mod light;
 pub mod material;
 pub mod math;

@@ -4,9 +4,10 @@ use residual_bvh::{Hit, Ray};
 
 use crate::camera::Camera;
 use crate::domain::Domain;
+use crate::layer::Layers;
 use crate::light::LightKinds;
 use crate::material::Material;
-use crate::sampler::Sampler;
+use crate::tracer::{Settings, Tracer};
 
 /// Code to be run with a scene's material, whose type only the scene knows.
 pub trait MaterialVisitor<D: Domain> {
@@ -20,15 +21,17 @@ pub trait MaterialVisitor<D: Domain> {
 pub trait Scene<D: Domain>: Sync {
     /// The camera's kind.
     type Camera: Camera<D>;
-    /// The sampler's kind.
-    type Sampler: Sampler<D> + Copy;
+    /// The tracer, which has the sampler.
+    type Tracer: Tracer<D>;
     /// The kinds of lights.
     type Lights: LightKinds<D> + ?Sized;
 
     /// The camera.
     fn camera(&self) -> &Self::Camera;
-    /// The sampler.
-    fn sampler(&self) -> Self::Sampler;
+    /// The tracer with these settings.
+    fn tracer(&self, settings: Settings<D>) -> Self::Tracer;
+    /// The layers that it fills beside radiance.
+    fn layers(&self) -> Layers;
     /// The lights.
     fn lights(&self) -> &Self::Lights;
     /// How many material programs there are.

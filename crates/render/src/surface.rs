@@ -15,6 +15,15 @@ pub struct Ray<D: Domain> {
     pub tmax: D::F,
 }
 
+impl<D: Domain> Ray<D> {
+    /// A ray without an end.
+    #[inline(always)]
+    pub fn unbounded(d: D, org: Vec3<D::F>, dir: Vec3<D::F>) -> Self {
+        let tmax = d.lit(f64::from(f32::MAX));
+        Self { org, dir, tmax }
+    }
+}
+
 /// What traversal found.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<D: Domain> {

@@ -7,7 +7,7 @@ use residual_render::light::{
 };
 use residual_render::math::vec3::vec3;
 use residual_render::scene_data::SceneData;
-use residual_render::surface::Attributes;
+use residual_render::surface::{Attributes, Ray};
 use residual_render::texture::Const;
 
 use crate::support::random::Rng;
@@ -179,7 +179,10 @@ fn density_of_a_light_is_the_same_from_both_sides() {
             [f64::from(b1), f64::from(b2)],
             array(away).map(f64::from),
         );
-        let pdf = light::area_pdf(d, &there, away.length(d));
+        let ray = Ray::unbounded(d, from, away.normalize(d));
+        let pdf = LAMP
+            .density(d, Uint(0), &ray, &there)
+            .expect("rays meet lamps");
         let cos = f64::from(there.cos_geometric) * f64::from(there.area)
             / f64::from(away.length(d)).powi(2);
         worst.add((f64::from(pdf) * cos - 1.0).abs(), || format!("{b1} {b2}"));

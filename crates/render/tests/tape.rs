@@ -8,21 +8,33 @@ use residual_render::bsdf::Bsdf;
 use residual_render::camera::{AnyCamera, Camera};
 use residual_render::domain::tape::{Function, Outputs, Record, Tape};
 use residual_render::domain::{Buffer, Buffers, Bundle, Domain, Scalar, Uint};
+use residual_render::layer::{Layer, Layers};
 use residual_render::light;
 use residual_render::material::Material;
 use residual_render::math::elementary;
 use residual_render::math::vec3::vec3;
 use residual_render::program::{
-    AlphaNode, BoxedAlpha, BoxedMaterial, BsdfNode, ColorNode, EmissionNode, ImageNode,
-    InputNode, Interpreted, LightNode, NormalNode, Program, ScalarNode, SourceNode, Structure,
+    AlphaNode, BoxedAlpha, BoxedMaterial, BsdfNode, ColorNode, EmissionNode, ImageNode, InputNode,
+    Interpreted, LightNode, NormalNode, Program, ScalarNode, SourceNode, Structure,
 };
 use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene::Scene;
 use residual_render::surface::{Attributes, Hit, Ray, Surface};
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Input, UvMap};
-use residual_render::tracer::{Path, PathTracer, Tracer, Vertex};
+use residual_render::tracer::{
+    self, DebugView, Path, PathTracer, Settings, Tracer, TracerNode, TracerOptions,
+};
 
 const RUNS: usize = 1000;
+
+/// Paths of the tests are shorter.
+const OPTIONS: TracerOptions = TracerOptions {
+    image: [640, 480],
+    seed: 0,
+    max_depth: 100,
+    roulette_from: 5,
+    reach: 3.0,
+};
 
 /// Names of parameters, as many as any formula needs.
 const NAMES: [&str; 24] = [
@@ -450,6 +462,8 @@ fn structure(lights: Vec<LightNode>) -> Structure {
         lights,
         camera: AnyCamera::Perspective,
         sampler: AnySampler::Sobol,
+        tracer: TracerNode::Path,
+        layers: Layers::NONE,
     }
 }
 
@@ -564,15 +578,18 @@ impl Formula for CameraAndSampler {
         out.reals.extend(self.1.pair(d, key, dimension));
         let tracer = PathTracer {
             sampler: self.1,
-            size: [640, 480],
-            roulette_from: 5,
+            settings: Settings {
+                seed,
+                ..Settings::new(d, &OPTIONS)
+            },
         };
         let Path {
             ray,
             throughput,
             pdf,
             key,
-        } = tracer.on_emit(d, &self.0, [x, y], key);
+            depth,
+        } = tracer.on_emit(d, &self.0, [x, y], index);
         let through = self.0.ray(d, [out.reals[0], out.reals[1]]);
         for ray in [ray, through] {
             out.vector(ray.org);
@@ -581,7 +598,7 @@ impl Formula for CameraAndSampler {
         }
         out.vector(throughput);
         out.real(pdf);
-        out.words.extend([key.pixel, key.index]);
+        out.words.extend([key.pixel, key.index, depth]);
         out
     }
 }
@@ -595,26 +612,34 @@ fn cameras_and_samplers() {
     }
 }
 
-/// The path tracer's three steps at a hit.
-struct Steps;
+/// The step of a tracer at a hit, with all layers.
+struct AnyStep(TracerNode);
 
-impl Formula for Steps {
+impl Formula for AnyStep {
     fn name(&self) -> String {
-        "the path tracer".to_owned()
+        format!("{:?}", self.0)
     }
     fn arguments(&self, random: &mut Random) -> (Vec<f32>, Vec<u32>) {
         let (mut reals, mut words) = hit_arguments(random);
         reals.extend([0; 4].map(|_| random.between(0.1, 1.0)));
         words.extend([random.word(), random.word(), 1 + random.word() % 9]);
-        words.push(if random.unit() < 0.5 { u32::MAX } else { 2 });
         (reals, words)
     }
     fn run<D: Domain>(&self, d: D, r: &[D::F], words: &[D::U]) -> Yield<D> {
-        let &[prim, pixel, index, depth, light] = words else {
+        let &[prim, pixel, index, depth] = words else {
             unreachable!()
         };
-        let program = program(bsdfs().pop().unwrap(), inputs(false));
-        let structure = structure(light_kinds());
+        let mut program = program(bsdfs().pop().unwrap(), inputs(false));
+        program.emission = Some(EmissionNode {
+            radiance: Input(0),
+            double_sided: false,
+        });
+        let layers: Layers = Layer::ALL.into_iter().collect();
+        let structure = Structure {
+            tracer: self.0,
+            layers,
+            ..structure(light_kinds())
+        };
         let scene = Interpreted::<D>::new(&structure, &Buffers::EMPTY);
         let material = BoxedMaterial::<D>::new(&program);
         let dir = vec3(r[2], r[3], r[4]);
@@ -623,52 +648,52 @@ impl Formula for Steps {
             v: r[1],
             prim,
         };
-        let mut surface = Surface::new(d, material.attributes(), &hit, dir);
-        let wo = -dir.normalize(d);
-        let shading = material.shade(d, &mut surface, wo);
-        let vertex = Vertex {
-            surface: &surface,
-            bsdf: &shading.bsdf,
-            wo,
-            depth,
-        };
-        let throughput = vec3(r[5], r[6], r[7]);
         let path = Path {
-            ray: Ray {
-                org: surface.point - dir,
-                dir,
-                tmax: d.lit(1.0),
-            },
-            throughput,
+            ray: Ray::unbounded(d, -dir, dir),
+            throughput: vec3(r[5], r[6], r[7]),
             pdf: r[8],
             key: SampleKey { pixel, index },
+            depth,
         };
-        let tracer = PathTracer {
-            sampler: AnySampler::Sobol,
-            size: [8, 8],
-            roulette_from: 5,
-        };
-        let shadow = tracer.on_shadow(d, &path, &vertex, scene.lights());
-        let bounce = tracer.on_bounce(d, &path, &vertex);
+        let tracer = scene.tracer(Settings::new(d, &OPTIONS));
+        let step = tracer::shade(d, &tracer, &path, &hit, &material, scene.lights(), layers);
         let mut out = Yield::new();
-        out.vector(tracer.on_hit(d, &path, &surface, throughput, light));
-        out.vector(tracer.on_miss(d, &path, scene.lights()));
-        out.vector(shadow.ray.org);
-        out.vector(shadow.ray.dir);
-        out.real(shadow.ray.tmax);
-        out.vector(shadow.contribution);
-        out.vector(bounce.path.ray.org);
-        out.vector(bounce.path.ray.dir);
-        out.vector(bounce.path.throughput);
-        out.real(bounce.path.pdf);
-        out.truths.extend([shadow.active, bounce.active]);
+        if let Some(seen) = step.seen {
+            out.vector(seen);
+        }
+        let features = step.features.expect("there are layers");
+        out.truths.push(features.first);
+        out.reals.extend(features.channels(layers));
+        if let Some(shadow) = step.shadow {
+            out.vector(shadow.ray.org);
+            out.vector(shadow.ray.dir);
+            out.real(shadow.ray.tmax);
+            out.vector(shadow.contribution);
+            out.truths.push(shadow.active);
+        }
+        if let Some(bounce) = step.bounce {
+            out.vector(bounce.path.ray.org);
+            out.vector(bounce.path.ray.dir);
+            out.vector(bounce.path.throughput);
+            out.real(bounce.path.pdf);
+            out.words.push(bounce.path.depth);
+            out.truths.push(bounce.active);
+        }
+        if let Some(seen) = tracer.on_miss(d, &path, scene.lights()) {
+            out.vector(seen);
+        }
         out
     }
 }
 
 #[test]
-fn path_tracer() {
-    check(&Steps);
+fn steps_of_all_tracers() {
+    check(&AnyStep(TracerNode::Path));
+    check(&AnyStep(TracerNode::AmbientOcclusion));
+    for view in DebugView::ALL {
+        // A path of this tracer is at its end at once, which the recorder cannot know.
+        check(&AnyStep(TracerNode::Debug(view)));
+    }
 }
 
 /// Elementary functions of two numbers.

@@ -6,6 +6,7 @@ use residual_render::alpha::AlphaTest;
 use residual_render::camera::AnyCamera;
 use residual_render::domain::tape::{Outputs, Record, Tape};
 use residual_render::domain::{Buffer, Domain};
+use residual_render::layer::Layers;
 use residual_render::program::{
     AlphaNode, BsdfNode, ColorNode, EmissionNode, ImageNode, InputNode, LightNode, NormalNode,
     Program, ScalarNode, SourceNode, Structure,
@@ -13,6 +14,7 @@ use residual_render::program::{
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Input, UvMap};
+use residual_render::tracer::TracerNode;
 use residual_scenegen::emit::{wgsl::wgsl_function, wgsl_module};
 
 /// Parses and validates; panics with naga's explanation and the text.
@@ -146,6 +148,8 @@ fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Structure {
         lights,
         camera: AnyCamera::Perspective,
         sampler: AnySampler::Sobol,
+        tracer: TracerNode::Path,
+        layers: Layers::NONE,
     }
 }
 

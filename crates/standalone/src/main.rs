@@ -37,6 +37,8 @@ struct StandaloneScene {
     data: &'static [u8],
     /// The renderer.
     renderer: &'static (dyn TileRenderer + Sync),
+    /// How far its tracer reaches unless told otherwise.
+    reach: f32,
     /// Paths that it shades at once.
     lanes: LaneCount,
 }
@@ -92,7 +94,7 @@ fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
         &device,
         || scene.renderer,
         &view,
-        &args.render.render_options(size),
+        &args.render.render_options(size, scene.reach),
         |_| (),
     )?;
     let summary = SceneSummary {

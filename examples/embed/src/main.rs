@@ -42,6 +42,7 @@ fn main() -> Result<()> {
         time: None,
         max_depth: 8,
         seed: 0,
+        ..RenderOptions::default()
     };
     let device = CpuDevice::new(0)?;
     let (film, report) = device.render(|| &Compiled, &view, &job, |_| ControlFlow::Continue(()));

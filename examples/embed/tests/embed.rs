@@ -44,6 +44,7 @@ fn render(plan: &Plan, renderer: &dyn TileRenderer, threads: usize) -> Film {
         time: None,
         max_depth: 8,
         seed: 7,
+        ..RenderOptions::default()
     };
     CpuDevice::new(threads)
         .unwrap()

@@ -216,6 +216,10 @@ macro_rules! lanes {
                 }
             }
             #[inline(always)]
+            fn holds_nowhere(self, mask: Self::M) -> bool {
+                mask.all_false()
+            }
+            #[inline(always)]
             fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
                 self.simd.vectorize(f)
             }

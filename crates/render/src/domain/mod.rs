@@ -276,6 +276,13 @@ pub trait Domain: Copy {
         b: impl FnOnce() -> T,
     ) -> T;
 
+    /// The mask holds in no lane, for sure, so that what it guards may be left out. Domains that only write down cannot
+    /// know, and say no.
+    #[inline(always)]
+    fn holds_nowhere(self, _mask: Self::M) -> bool {
+        false
+    }
+
     /// Runs `f` with the instruction set that the domain's numbers need. Boxed nodes are entered through it,
     /// since a call through a vtable leaves the caller's instruction set behind.
     #[inline(always)]

@@ -140,6 +140,10 @@ macro_rules! single {
             ) -> T {
                 if mask { a() } else { b() }
             }
+            #[inline(always)]
+            fn holds_nowhere(self, mask: bool) -> bool {
+                !mask
+            }
         }
     };
 }

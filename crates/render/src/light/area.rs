@@ -5,7 +5,7 @@
 use super::{LightKind, LightSample};
 use crate::domain::{Buffer, Domain};
 use crate::math::{Vec3, warp};
-use crate::surface::{Attributes, Surface, offset_point};
+use crate::surface::{Attributes, Ray, Surface, offset_point};
 use crate::texture::ColorSource;
 
 /// Triangles whose emission comes from sources of one kind.
@@ -44,11 +44,10 @@ impl<D: Domain, E: ColorSource<D>> LightKind<D> for Area<E> {
             delta: d.truth(false),
         }
     }
-}
 
-/// Density, per steradian, with which [`Area`] proposes the point `hit` seen from `distance` away, given that its
-/// light was picked.
-#[inline(always)]
-pub fn pdf<D: Domain>(d: D, hit: &Surface<D>, distance: D::F) -> D::F {
-    distance * distance / d.max(hit.cos_geometric * hit.area, d.lit(1e-37))
+    #[inline(always)]
+    fn density(&self, d: D, _: D::U, ray: &Ray<D>, seen: &Surface<D>) -> Option<D::F> {
+        let distance = (seen.point - ray.org).length(d);
+        Some(distance * distance / d.max(seen.cos_geometric * seen.area, d.lit(1e-37)))
+    }
 }

@@ -12,12 +12,13 @@ mod area;
 pub mod environment;
 mod punctual;
 
-pub use area::{Area, pdf as area_pdf};
+pub use area::Area;
 pub use environment::Environment;
 pub use punctual::{Directional, Point, Spot};
 
 use crate::domain::{Buffer, Bundle, Domain};
 use crate::math::{Color, Vec3};
+use crate::surface::{Ray, Surface};
 
 /// Words of a light's record.
 pub const RECORD: u32 = 12;
@@ -77,6 +78,12 @@ pub trait LightKind<D: Domain> {
     fn background(&self, _: D, _dir: Vec3<D::F>) -> Option<Background<D>> {
         None
     }
+
+    /// Density, per steradian, with which [`sample`](LightKind::sample) proposes to the origin of `ray` the direction
+    /// of `ray`, which met the light with this record at `seen`. `None` for lights that no ray can meet.
+    fn density(&self, _: D, _record: D::U, _ray: &Ray<D>, _seen: &Surface<D>) -> Option<D::F> {
+        None
+    }
 }
 
 /// The kind wanted from a list, or from the rest of one that starts at position `first` of the whole.
@@ -115,6 +122,29 @@ pub trait LightKinds<D: Domain> {
     ) -> LightSample<D>;
     /// The background of the first kind that has one.
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>>;
+    /// [`LightKind::density`] of a light whose kind's number is `kind`; `None` if no ray can meet any kind.
+    fn density(
+        &self,
+        d: D,
+        kind: KindNumber<D::U>,
+        record: D::U,
+        ray: &Ray<D>,
+        seen: &Surface<D>,
+    ) -> Option<D::F>;
+}
+
+/// The density of a light that is of the first kind of a list, or of one of the rest.
+#[inline(always)]
+fn either_density<D: Domain>(
+    d: D,
+    kind: KindNumber<D::U>,
+    first: Option<D::F>,
+    rest: Option<D::F>,
+) -> Option<D::F> {
+    match (first, rest) {
+        (Some(first), Some(rest)) => Some(d.select(kind.is_first(d), first, rest)),
+        (first, rest) => first.or(rest),
+    }
 }
 
 impl<D: Domain> LightKinds<D> for () {
@@ -143,6 +173,17 @@ impl<D: Domain> LightKinds<D> for () {
     }
     #[inline(always)]
     fn background(&self, _: D, _: Vec3<D::F>) -> Option<Background<D>> {
+        None
+    }
+    #[inline(always)]
+    fn density(
+        &self,
+        _: D,
+        _: KindNumber<D::U>,
+        _: D::U,
+        _: &Ray<D>,
+        _: &Surface<D>,
+    ) -> Option<D::F> {
         None
     }
 }
@@ -177,6 +218,19 @@ impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
             .background(d, dir)
             .or_else(|| self.1.background(d, dir))
     }
+    #[inline(always)]
+    fn density(
+        &self,
+        d: D,
+        kind: KindNumber<D::U>,
+        record: D::U,
+        ray: &Ray<D>,
+        seen: &Surface<D>,
+    ) -> Option<D::F> {
+        let first = self.0.density(d, record, ray, seen);
+        let rest = self.1.density(d, kind.in_rest(), record, ray, seen);
+        either_density(d, kind, first, rest)
+    }
 }
 
 /// Kinds in boxes: the interpreted renderer's list.
@@ -204,6 +258,19 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
     }
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
         self.iter().find_map(|kind| kind.background(d, dir))
+    }
+    fn density(
+        &self,
+        d: D,
+        kind: KindNumber<D::U>,
+        record: D::U,
+        ray: &Ray<D>,
+        seen: &Surface<D>,
+    ) -> Option<D::F> {
+        let (head, tail) = self.split_first()?;
+        let first = head.density(d, record, ray, seen);
+        let rest = tail.density(d, kind.in_rest(), record, ray, seen);
+        either_density(d, kind, first, rest)
     }
 }
 
@@ -267,6 +334,31 @@ pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
             }
         },
     )
+}
+
+/// Density, per steradian and the pick included, with which light sampling proposes to the origin of `ray` the
+/// direction of `ray`, which met a surface at `seen`; 0 where that is no light.
+#[inline(always)]
+pub fn density<D: Domain, L: LightKinds<D> + ?Sized>(
+    d: D,
+    lights: &L,
+    ray: &Ray<D>,
+    seen: &Surface<D>,
+) -> D::F {
+    let no_light = d.eq_u(seen.light, d.uint(NO_LIGHT));
+    let light = d.select_u(no_light, d.uint(0), seen.light);
+    let record = light * d.uint(RECORD);
+    let kind = KindNumber {
+        kind: d.load(Buffer::Lights, record),
+        first: 0,
+    };
+    match lights.density(d, kind, record, ray, seen) {
+        Some(density) => {
+            let density = density * pick_probability(d, light);
+            d.select(no_light, d.lit(0.0), density)
+        }
+        None => d.lit(0.0),
+    }
 }
 
 /// The probability of picking a light.

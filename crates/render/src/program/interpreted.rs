@@ -7,9 +7,11 @@ use super::{LightNode, Structure};
 use crate::alpha::is_there;
 use crate::camera::AnyCamera;
 use crate::domain::{Buffer, Buffers, Domain, Scalar};
+use crate::layer::Layers;
 use crate::light::{Area, Directional, Environment, LightKind, Point, Spot};
 use crate::sampler::AnySampler;
 use crate::scene::{MaterialVisitor, Scene};
+use crate::tracer::{AnyTracer, Settings, TracerNode};
 
 /// A scene as boxed nodes over a domain.
 pub struct Interpreted<'a, D: Domain> {
@@ -19,6 +21,8 @@ pub struct Interpreted<'a, D: Domain> {
     lights: Vec<Box<dyn LightKind<D> + Send + Sync + 'a>>,
     camera: AnyCamera,
     sampler: AnySampler,
+    tracer: TracerNode,
+    layers: Layers,
 }
 
 impl<'a, D: Domain + 'a> Interpreted<'a, D> {
@@ -50,20 +54,25 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
             lights: structure.lights.iter().map(light).collect(),
             camera: structure.camera,
             sampler: structure.sampler,
+            tracer: structure.tracer,
+            layers: structure.layers,
         }
     }
 }
 
 impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
     type Camera = AnyCamera;
-    type Sampler = AnySampler;
+    type Tracer = AnyTracer<D, AnySampler>;
     type Lights = [Box<dyn LightKind<D> + Send + Sync + 'a>];
 
     fn camera(&self) -> &AnyCamera {
         &self.camera
     }
-    fn sampler(&self) -> AnySampler {
-        self.sampler
+    fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
+        self.tracer.tracer(self.sampler, settings)
+    }
+    fn layers(&self) -> Layers {
+        self.layers
     }
     fn lights(&self) -> &Self::Lights {
         &self.lights

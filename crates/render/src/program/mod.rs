@@ -8,9 +8,11 @@ pub use interpreted::Interpreted;
 
 use crate::alpha::AlphaTest;
 use crate::camera::AnyCamera;
+use crate::layer::Layers;
 use crate::sampler::AnySampler;
 use crate::surface::Attributes;
 use crate::texture::{AnyFilter, AnyFormat, AnyWrap, Image, Input};
+use crate::tracer::TracerNode;
 
 /// An image source whose kinds are values.
 pub type ImageNode = Image<AnyWrap, AnyWrap, AnyFilter, AnyFormat>;
@@ -175,4 +177,8 @@ pub struct Structure {
     pub camera: AnyCamera,
     /// The sampler's kind.
     pub sampler: AnySampler,
+    /// The tracer's kind.
+    pub tracer: TracerNode,
+    /// The layers that are filled beside radiance.
+    pub layers: Layers,
 }

@@ -1,12 +1,29 @@
 //! Tracers: what is computed along rays, apart from how a device schedules it (thesis, section 3.3).
 //!
-//! A device calls `on_emit` for each sample, `on_hit` and `on_miss` for what rays found, `on_shadow` for light
-//! arriving directly, and `on_bounce` for the way on. "Nothing to do" is a mask, not a way out of the function,
-//! so that lanes stay together.
+//! A tracer owns every policy: how long paths are, which lobes go on, what is added to the image where a ray hits,
+//! misses or arrives at a light. A device calls [`Tracer::on_emit`] for each sample, [`shade`] for each hit,
+//! [`Tracer::on_miss`] for the rest, and traces what comes back.
+//!
+//! What a scene decides is static: a method that has nothing to give returns `None`, and its code disappears. What a
+//! path decides is a mask, so that lanes stay together.
 
+mod ambient_occlusion;
+mod any;
+mod cost_map;
+mod debug;
+mod features;
 mod path;
+mod settings;
+mod step;
 
+pub use ambient_occlusion::AmbientOcclusion;
+pub use any::{AnyTracer, TracerNode};
+pub use cost_map::CostMap;
+pub use debug::{Debug, DebugView};
+pub use features::Features;
 pub use path::PathTracer;
+pub use settings::{Settings, TracerOptions};
+pub use step::{Step, shade};
 
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -19,7 +36,7 @@ use crate::surface::{Ray, Surface};
 /// A path between two hits.
 #[derive(Clone, Copy)]
 pub struct Path<D: Domain> {
-    /// The ray about to be traced, or just traced.
+    /// The ray about to be traced, or just traced. Its direction is a unit vector.
     pub ray: Ray<D>,
     /// What the ray's radiance counts for in the pixel.
     pub throughput: Color<D::F>,
@@ -28,6 +45,8 @@ pub struct Path<D: Domain> {
     pub pdf: D::F,
     /// Its random numbers.
     pub key: SampleKey<D::U>,
+    /// Index of the vertex that the ray is looking for; the first is 1.
+    pub depth: D::U,
 }
 
 /// A shadow ray with what it is worth if nothing is in its way.
@@ -50,52 +69,83 @@ pub struct Bounce<D: Domain> {
     pub active: D::M,
 }
 
-/// A surface point with its BSDF, seen along a path.
+/// A vertex of a path: a surface point with what its material says of it.
 #[derive(Clone, Copy)]
 pub struct Vertex<'a, D: Domain, B> {
     /// The point.
     pub surface: &'a Surface<D>,
+    /// Index of the triangle.
+    pub triangle: D::U,
+    /// Radiance emitted back along the path, if the material emits at all.
+    pub emission: Option<Color<D::F>>,
     /// Its BSDF.
     pub bsdf: &'a B,
     /// Unit direction back along the path, world space.
     pub wo: Vec3<D::F>,
-    /// Number of the vertex on its path; the first is 1.
-    pub depth: D::U,
 }
 
 /// What is computed along rays.
 pub trait Tracer<D: Domain> {
-    /// The camera ray of a sample of the pixel at (x, y).
-    fn on_emit<C: Camera<D>>(
-        &self,
-        d: D,
-        camera: &C,
-        pixel: [D::U; 2],
-        key: SampleKey<D::U>,
-    ) -> Path<D>;
+    /// The path that begins with a camera ray: sample `sample` of the pixel at (x, y).
+    fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D>;
 
-    /// The contribution of light that the surface emits along the path. `light` is its number.
-    fn on_hit(
+    /// The contribution of the vertex itself.
+    #[inline(always)]
+    fn on_hit<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
         &self,
-        d: D,
-        path: &Path<D>,
-        surface: &Surface<D>,
-        emission: Color<D::F>,
-        light: D::U,
-    ) -> Color<D::F>;
+        _d: D,
+        _path: &Path<D>,
+        _vertex: &Vertex<'_, D, B>,
+        _lights: &L,
+    ) -> Option<Color<D::F>> {
+        None
+    }
 
     /// The contribution of what a ray that hit nothing sees.
-    fn on_miss<L: LightKinds<D> + ?Sized>(&self, d: D, path: &Path<D>, lights: &L) -> Color<D::F>;
+    #[inline(always)]
+    fn on_miss<L: LightKinds<D> + ?Sized>(
+        &self,
+        _d: D,
+        _path: &Path<D>,
+        _lights: &L,
+    ) -> Option<Color<D::F>> {
+        None
+    }
 
-    /// Light that arrives at the vertex directly.
+    /// Whether the path is short enough for a shadow ray and a bounce from its vertex.
+    fn goes_on(&self, d: D, path: &Path<D>) -> D::M;
+
+    /// A ray from the vertex that counts if it is not occluded.
+    #[inline(always)]
     fn on_shadow<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
         &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-        lights: &L,
-    ) -> Shadow<D>;
+        _d: D,
+        _path: &Path<D>,
+        _vertex: &Vertex<'_, D, B>,
+        _lights: &L,
+    ) -> Option<Shadow<D>> {
+        None
+    }
 
     /// The way on from the vertex.
-    fn on_bounce<B: Bsdf<D>>(&self, d: D, path: &Path<D>, vertex: &Vertex<'_, D, B>) -> Bounce<D>;
+    #[inline(always)]
+    fn on_bounce<B: Bsdf<D>>(
+        &self,
+        _d: D,
+        _path: &Path<D>,
+        _vertex: &Vertex<'_, D, B>,
+    ) -> Option<Bounce<D>> {
+        None
+    }
+
+    /// How the cost of tracing a camera ray is shown, if that is what the image is of.
+    fn cost_map(&self) -> Option<CostMap> {
+        None
+    }
+}
+
+/// A direction is on the same side of the geometric and of the shading surface.
+#[inline(always)]
+fn consistent<D: Domain>(d: D, surface: &Surface<D>, world: Vec3<D::F>, local: Vec3<D::F>) -> D::M {
+    d.lt(d.lit(0.0), surface.geometric_normal.dot(d, world) * local.z)
 }

@@ -67,7 +67,12 @@ pub(crate) fn scene() -> SceneData {
     fill(Buffer::Texels, 4 * 64, 0.0, 1.0);
     fill(Buffer::Lights, RECORD * 5, -1.0, 1.0);
     fill(Buffer::Camera, 12, -1.0, 1.0);
-    fill(Buffer::LightAlias, ALIAS_HEADER + ALIAS_ENTRY * 5, 0.05, 1.0);
+    fill(
+        Buffer::LightAlias,
+        ALIAS_HEADER + ALIAS_ENTRY * 5,
+        0.05,
+        1.0,
+    );
     fill(Buffer::Environment, HEADER + ALIAS_ENTRY * 12, 0.1, 1.0);
     for triangle in 0..TRIANGLES {
         let corners = [[0; 3]; 3].map(|corner| corner.map(|_| random.between(-2.0, 2.0)));

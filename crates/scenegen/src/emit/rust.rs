@@ -13,6 +13,7 @@ use crate::plan::{MaterialUse, Plan};
 
 mod layout;
 mod sources;
+mod tracer;
 use layout::Code;
 use sources::{Textures, Typed, unit};
 
@@ -44,9 +45,11 @@ fn write(out: &mut String, plan: &Plan, lanes: &str) -> fmt::Result {
     )?;
     writeln!(
         out,
-        "    pub const STRUCTURE: u64 = {:#018x};\n}}",
+        "    pub const STRUCTURE: u64 = {:#018x};",
         fingerprint(structure)
     )?;
+    tracer::layers(out, structure.layers)?;
+    writeln!(out, "}}")?;
     for constant in textures.constants() {
         writeln!(out, "\n{constant}")?;
     }
@@ -67,8 +70,8 @@ const HEADER: &str = "
     reason = \"one list serves all scenes\"
 )]
 use render::{
-    alpha::*, bsdf::*, camera::*, domain::*, light::*, material::*, math::*, sampler::*,
-    scene::MaterialVisitor, surface::*, texture::*,
+    alpha::*, bsdf::*, camera::*, domain::*, layer::*, light::*, material::*, math::*, sampler::*,
+    scene::MaterialVisitor, surface::*, texture::*, tracer::*,
 };
 #[allow(unused_imports, reason = \"one list serves all scenes\")]
 use residual_device_cpu::generated::{Hit, Ray, render};
@@ -103,7 +106,7 @@ fn scene(out: &mut String, plan: &Plan, textures: &Textures<'_>) -> fmt::Result 
         "\nimpl<D: Domain> render::scene::Scene<D> for Scene<'_> {{"
     )?;
     writeln!(out, "    type Camera = {:?};", structure.camera)?;
-    writeln!(out, "    type Sampler = {:?};", structure.sampler)?;
+    tracer::associated_type(out, structure)?;
     let lights = "    type Lights = ";
     writeln!(out, "{lights}{};\n", types.lines(4, lights.len(), 1))?;
     writeln!(out, "    #[inline(always)]")?;
@@ -112,12 +115,7 @@ fn scene(out: &mut String, plan: &Plan, textures: &Textures<'_>) -> fmt::Result 
         "    fn camera(&self) -> &Self::Camera {{\n        &{:?}\n    }}",
         structure.camera
     )?;
-    writeln!(out, "    #[inline(always)]")?;
-    writeln!(
-        out,
-        "    fn sampler(&self) -> Self::Sampler {{\n        {:?}\n    }}",
-        structure.sampler
-    )?;
+    tracer::methods(out, structure)?;
     for (light, of_kind) in structure.lights.iter().zip(&plan.lights) {
         writeln!(out, "    // {}: {}", light_name(light), of_kind.count)?;
     }

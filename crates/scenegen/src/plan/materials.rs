@@ -9,6 +9,7 @@ use residual_render::program::{
 };
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
+use residual_render::tracer::{DebugView, TracerNode};
 
 use super::closed::is_closed;
 use super::geometry::is_smooth;
@@ -56,7 +57,10 @@ pub(super) fn plan_materials(
             normals: available.normals && !options.flat_normals,
             ..available
         };
-        let program = builder.program(desc, available, presence);
+        let mut program = builder.program(desc, available, presence);
+        if options.tracer == TracerNode::Debug(DebugView::TextureCoordinates) {
+            program.attributes.uv0 |= available.uv0;
+        }
         let collected = builder.sources.collected();
         let transmits = bsdf_transmits(&program.bsdf);
         let culled = options.culling == CullingRule::Gltf && !desc.double_sided && !transmits;

@@ -17,9 +17,11 @@ mod sources;
 use std::collections::BTreeMap;
 
 use residual_render::domain::Buffer;
+use residual_render::layer::Layers;
 use residual_render::program::{Program, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
+use residual_render::tracer::TracerNode;
 
 pub use camera::{CameraChoice, View};
 pub use explain::{BindingTimes, Decision};
@@ -62,6 +64,10 @@ pub struct PlanOptions {
     pub flat_normals: bool,
     /// Sampler.
     pub sampler: AnySampler,
+    /// What is computed along rays.
+    pub tracer: TracerNode,
+    /// What is kept of pixels beside radiance.
+    pub layers: Layers,
 }
 
 impl Default for PlanOptions {
@@ -73,6 +79,8 @@ impl Default for PlanOptions {
             culling: CullingRule::default(),
             flat_normals: false,
             sampler: AnySampler::Sobol,
+            tracer: TracerNode::default(),
+            layers: Layers::NONE,
         }
     }
 }
@@ -94,6 +102,8 @@ pub struct Plan {
     pub lights: Vec<LightKindUse>,
     /// The camera that was chosen.
     pub camera_name: String,
+    /// Length of the diagonal of the box around everything.
+    pub diagonal: f32,
     /// What was changed or left out.
     pub warnings: Vec<Warning>,
     /// What the scene has and the image does not need.
@@ -152,9 +162,16 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
 
     let materials = materials::plan_materials(scene, options, &mut images, &mut warnings);
     let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
-    let lights = lights::plan_lights(scene, &materials, &geometry, &mut images, &mut data);
+    // Only paths need lights.
+    let lights = match options.tracer {
+        TracerNode::Path => {
+            lights::plan_lights(scene, &materials, &geometry, &mut images, &mut data)
+        }
+        TracerNode::AmbientOcclusion | TracerNode::Debug(_) => lights::PlannedLights::default(),
+    };
+    let needs_light = options.tracer == TracerNode::Path;
     // A black environment is darkness that was asked for.
-    if lights.kinds.is_empty() && scene.environment.is_none() {
+    if needs_light && lights.kinds.is_empty() && scene.environment.is_none() {
         let mut plan = plan(&scene.with_white_sky(), options)?;
         plan.warnings.push(Warning {
             place: "lights".to_owned(),
@@ -176,11 +193,14 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             lights: lights.kinds,
             camera,
             sampler: options.sampler,
+            tracer: options.tracer,
+            layers: options.layers,
         },
         data,
         materials: materials.uses,
         lights: lights.uses,
         camera_name,
+        diagonal: 2.0 * geometry.bounds.sphere().1,
         warnings,
         dismissed: [&scene.dismissed[..], &materials.dismissed].concat(),
     })
@@ -215,6 +235,16 @@ impl Materials {
         self.planned[material]
             .as_ref()
             .expect("materials of visible meshes are planned")
+    }
+}
+
+impl Plan {
+    /// How far a tracer reaches unless it is told: [`reach`](residual_render::tracer::TracerOptions::reach).
+    pub fn default_reach(&self) -> f32 {
+        match self.structure.tracer {
+            TracerNode::AmbientOcclusion => 0.1 * self.diagonal,
+            TracerNode::Path | TracerNode::Debug(_) => self.diagonal,
+        }
     }
 }
 

@@ -1,0 +1,57 @@
+//! The samples of a job while they are summed up.
+
+use residual_render::domain::{Lanes, MAX_LANES};
+use residual_render::layer::Layers;
+use residual_render::math::Color;
+use residual_render::tracer::Features;
+
+/// `values[sample][row][column][channel]`: radiance, then the channels of the layers.
+pub(crate) struct Samples<'a> {
+    values: &'a mut [f32],
+    layers: Layers,
+}
+
+impl<'a> Samples<'a> {
+    /// All zero.
+    pub(crate) fn new(values: &'a mut [f32], layers: Layers) -> Self {
+        values.fill(0.0);
+        Self { values, layers }
+    }
+
+    /// Adds a row of red, green and blue to the sample of the index behind them.
+    #[inline(always)]
+    pub(crate) fn add_row(&mut self, [r, g, b, sample]: [u32; 4]) {
+        let first = sample as usize * self.layers.stride();
+        let radiance = &mut self.values[first..first + Layers::RADIANCE];
+        radiance[0] += f32::from_bits(r);
+        radiance[1] += f32::from_bits(g);
+        radiance[2] += f32::from_bits(b);
+    }
+
+    /// Adds radiance in the lanes whose bit is set.
+    #[inline(always)]
+    pub(crate) fn add<D: Lanes>(&mut self, d: D, bits: u32, sample: D::U, color: Color<D::F>) {
+        let [r, g, b] = [d.to_bits(color.x), d.to_bits(color.y), d.to_bits(color.z)];
+        let rows = d.rows([r, g, b, sample]);
+        let mut bits = bits;
+        while bits != 0 {
+            self.add_row(rows[bits.trailing_zeros() as usize % MAX_LANES]);
+            bits &= bits - 1;
+        }
+    }
+
+    /// Sets the channels of layers in the lanes whose bit is set.
+    pub(crate) fn set<D: Lanes>(&mut self, d: D, bits: u32, sample: D::U, features: &Features<D>) {
+        let stride = self.layers.stride();
+        let mut indices = [0; MAX_LANES];
+        d.store_word(sample, &mut indices[..D::LANES]);
+        for (channel, &value) in features.channels(self.layers).iter().enumerate() {
+            let mut values = [0; MAX_LANES];
+            d.store_word(d.to_bits(value), &mut values[..D::LANES]);
+            for lane in (0..D::LANES).filter(|lane| bits >> lane & 1 == 1) {
+                let first = indices[lane] as usize * stride;
+                self.values[first + Layers::RADIANCE + channel] = f32::from_bits(values[lane]);
+            }
+        }
+    }
+}
