@@ -138,6 +138,8 @@
 //! assert_eq!(hit.t, 1.0);
 //! ```
 //!
+//! [`traversal_cost`] counts the nodes and packets that [`closest_hit`] visits.
+//!
 //! ```text
 //! positions, triangles ─ build ─ sbvh (binary tree, references) ─ reinsert ─ collapse ─ Bvh<N>
 //!                                                                                        │ view
@@ -163,6 +165,7 @@ mod bvh;
 mod clip;
 mod collapse;
 mod columns;
+mod cost;
 mod dispatch;
 mod filter;
 mod fragment;
@@ -197,6 +200,7 @@ pub use bounds::Bounds;
 pub use boxes::Boxes;
 pub use build::{BuildQuality, build, build_with_progress};
 pub use bvh::{Bvh, BvhView, Node, TrianglePacket};
+pub use cost::{TraversalCost, traversal_cost};
 pub use dispatch::HasKernels;
 pub use filter::{AllHits, Culling, FrontHits, HitFilter, MarkedHits};
 pub use instances::{

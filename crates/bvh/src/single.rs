@@ -108,22 +108,16 @@ where
     B: Boxes<N>,
 {
     let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
-    let mut search = Search::<S, P, Pr, F, ANY> {
-        simd,
-        precision,
-        packets: bvh.packets(),
-        shear: Shear::of_ray(simd, ray, tmin),
-        ray,
-        filter,
-        best,
-    };
+    let packets = bvh.packets();
+    let mut search =
+        Search::<S, P, Pr, F, ANY>::new(simd, precision, packets, ray, tmin, filter, best);
     // SAFETY: the view is structurally valid, and the start is by this function's contract.
     unsafe { traverse(simd, bvh.nodes(), start, &slab, &mut search) };
     search.best
 }
 
 /// The search for one ray's hit.
-struct Search<'a, S: Lanes<P>, const P: usize, Pr, F, const ANY: bool> {
+pub(crate) struct Search<'a, S: Lanes<P>, const P: usize, Pr, F, const ANY: bool> {
     simd: S,
     precision: Pr,
     packets: &'a [TrianglePacket<P>],
@@ -160,9 +154,31 @@ impl<S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> 
     }
 }
 
-impl<S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>
-    Search<'_, S, P, Pr, F, ANY>
+impl<'a, S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>
+    Search<'a, S, P, Pr, F, ANY>
 {
+    /// For a hit better than `best`. The ray is valid, `tmin` not negative.
+    #[inline(always)]
+    pub(crate) fn new(
+        simd: S,
+        precision: Pr,
+        packets: &'a [TrianglePacket<P>],
+        ray: &'a Ray,
+        tmin: f32,
+        filter: &'a F,
+        best: Hit,
+    ) -> Self {
+        Search {
+            simd,
+            precision,
+            packets,
+            shear: Shear::of_ray(simd, ray, tmin),
+            ray,
+            filter,
+            best,
+        }
+    }
+
     /// Improves the best hit by the packet's triangles. Breaks where any hit will do.
     #[inline(always)]
     fn packet(&mut self, packet: &TrianglePacket<P>) -> ControlFlow<()> {

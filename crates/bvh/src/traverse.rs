@@ -26,6 +26,9 @@ pub(crate) trait Visitor {
     fn items(&self) -> &[Self::Item];
     /// The farthest distance of interest, which may shrink.
     fn tmax(&self) -> f32;
+    /// A node's boxes are about to be tested.
+    #[inline(always)]
+    fn node(&mut self) {}
     /// Breaks if nothing else needs to be visited.
     fn leaf(&mut self, leaf: Child) -> ControlFlow<()>;
 }
@@ -63,6 +66,7 @@ pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, B: Boxes<N>, V: Visit
         while !current.is_leaf() {
             // SAFETY: children that are not leaves index the nodes, by this function's contract.
             let node = unsafe { nodes.get_unchecked(current.0 as usize) };
+            visitor.node();
             let (touched, entry) = test.touched_children(simd, node, visitor.tmax());
             let mut rest = touched;
             for _ in 0..PREFETCHED {
