@@ -11,7 +11,7 @@
 //! extent where the ray passes inside. All other roundings are relative to the distance and to the
 //! coordinates. So:
 //! - a triangle's box is padded by 2⁻¹⁶ of its extent, twice what `K = 32` needs, and by one unit in
-//!   the last place of its coordinates; the slab test's own slack (`slab.rs`) covers the distance;
+//!   the last place of its coordinates; the slab test's own slack (`trace/slab.rs`) covers the distance;
 //! - a hit with a greater `K`, on a triangle seen edge-on, is moved to where the ray passes through
 //!   its padded box, computed with less slack than the nodes' boxes get.
 //!
@@ -21,7 +21,7 @@
 //! the part that it is in; for the ill-conditioned the argument fails, which takes another surface
 //! at nearly the same distance to show.
 
-use crate::Ray;
+use crate::ray::Ray;
 
 /// An axis-aligned box; empty when `lo > hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,10 +6,14 @@
 
 use fearless_simd::{Level, dispatch};
 
-use crate::{
-    AllHits, Bvh, Hit, HitFilter, Hybrid, InstanceHit, InstancedBvh, Kernel, Ray, Watertight,
-    any_hit, any_instance_hit, closest_hit, closest_instance_hit,
-};
+use crate::filter::{AllHits, HitFilter};
+use crate::instances::instanced_bvh::InstancedBvh;
+use crate::instances::query::{InstanceHit, any_instance_hit, closest_instance_hit};
+use crate::layout::bvh::Bvh;
+use crate::precision::watertight::Watertight;
+use crate::ray::{Hit, Ray};
+use crate::trace::single::{any_hit, closest_hit};
+use crate::trace::stream::{Hybrid, Kernel};
 
 /// Widths for which a query can be dispatched at run time: `N` of 2, 4, 8 or 16 with `P` of 1, 4, 8
 /// or 16. Implemented for the [`Bvh`]s of these widths, and nothing else.
@@ -128,7 +132,10 @@ where
 }
 
 mod sealed {
-    use crate::{Hit, HitFilter, InstanceHit, InstancedBvh, Ray};
+    use crate::filter::HitFilter;
+    use crate::instances::instanced_bvh::InstancedBvh;
+    use crate::instances::query::InstanceHit;
+    use crate::ray::{Hit, Ray};
 
     /// The queries that are compiled for every instruction set.
     pub trait Dispatch<const N: usize, const P: usize> {

@@ -1,7 +1,7 @@
 //! Which of the triangles that a ray meets count as hits.
 
-use crate::bvh::SINGLE_SIDED;
-use crate::{Hit, Ray};
+use crate::layout::triangle_packet::SINGLE_SIDED;
+use crate::ray::{Hit, Ray};
 
 /// Which sides of a triangle can be hit. The front is the side from which the vertices appear
 /// counter-clockwise.

@@ -138,6 +138,8 @@
 //! assert_eq!(hit.t, 1.0);
 //! ```
 //!
+//! [`traversal_cost`] counts the nodes and packets that [`closest_hit`] visits.
+//!
 //! ```text
 //! positions, triangles ─ build ─ sbvh (binary tree, references) ─ reinsert ─ collapse ─ Bvh<N>
 //!                                                                                        │ view
@@ -153,62 +155,38 @@
 //! - Invalid rays and degenerate triangles never hit and never disturb others.
 #![warn(clippy::undocumented_unsafe_blocks)]
 
-mod balance;
-mod binary;
-mod binning;
 mod bounds;
-mod boxes;
 mod build;
-mod bvh;
-mod clip;
-mod collapse;
-mod columns;
 mod dispatch;
 mod filter;
-mod fragment;
 mod instances;
-mod packet;
-mod partition;
-mod placed;
-mod ploc;
+mod layout;
 mod precision;
-mod prefetch;
-mod presplit;
-mod quantized;
 mod ray;
-mod refit;
-mod reinsert;
-mod sbvh;
-mod scalar;
-mod serial;
 mod simd;
-mod single;
-mod slab;
-mod sorting_network;
-mod spatial;
-mod stack;
-mod stream;
-mod top_level;
-mod traverse;
-mod triangle;
-mod validate;
+mod trace;
 
 pub use bounds::Bounds;
-pub use boxes::Boxes;
 pub use build::{BuildQuality, build, build_with_progress};
-pub use bvh::{Bvh, BvhView, Node, TrianglePacket};
 pub use dispatch::HasKernels;
 pub use filter::{AllHits, Culling, FrontHits, HitFilter, MarkedHits};
-pub use instances::{
-    Instance, InstanceFault, InstanceHit, InstancedBvh, InvalidInstance, any_instance_hit,
-    closest_instance_hit,
-};
-pub use precision::{Exact, Fast, Precision, Watertight};
-pub use quantized::{QuantizedBvh, QuantizedNode};
+pub use instances::instance::{Instance, InstanceFault, InvalidInstance};
+pub use instances::instanced_bvh::InstancedBvh;
+pub use instances::query::{InstanceHit, any_instance_hit, closest_instance_hit};
+pub use layout::boxes::Boxes;
+pub use layout::bvh::{Bvh, BvhView};
+pub use layout::node::Node;
+pub use layout::quantized::{QuantizedBvh, QuantizedNode};
+pub use layout::serial::LoadError;
+pub use layout::triangle_packet::TrianglePacket;
+pub use layout::validate::InvalidBvh;
+pub use precision::exact::Exact;
+pub use precision::fast::Fast;
+pub use precision::triangle_test::Precision;
+pub use precision::watertight::Watertight;
 pub use ray::{Hit, Ray};
-pub use scalar::Scalar;
-pub use serial::LoadError;
 pub use simd::Lanes;
-pub use single::{any_hit, closest_hit};
-pub use stream::{Hybrid, Kernel, Packets, Single};
-pub use validate::InvalidBvh;
+pub use trace::cost::{TraversalCost, traversal_cost};
+pub use trace::scalar::Scalar;
+pub use trace::single::{any_hit, closest_hit};
+pub use trace::stream::{Hybrid, Kernel, Packets, Single};

@@ -7,11 +7,14 @@
 //! Neighbours agree on their edge because both take the sign of the same number. Touching counts as
 //! inside, for both; in its plane a triangle has no inside.
 
-use super::expansion::{self, Pair};
-use super::{Precision, sealed::Test};
 use crate::bounds::Bounds;
-use crate::triangle::{LaneHits, Shear, Triangles};
-use crate::{Culling, Lanes, Ray};
+use crate::filter::Culling;
+use crate::precision::expansion::{self, Pair};
+use crate::precision::triangle::{LaneHits, Shear, Triangles};
+use crate::precision::triangle_test::Precision;
+use crate::precision::triangle_test::sealed::Test;
+use crate::ray::Ray;
+use crate::simd::Lanes;
 
 /// Whether a ray meets a triangle is decided without error, for the closed triangle that its `f32`
 /// corners span; so closed meshes have no holes, and nothing is hit that should not be. The

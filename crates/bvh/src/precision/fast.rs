@@ -1,8 +1,11 @@
 //! The shear test with fused operations throughout.
 
-use super::{Precision, sealed::Test, sides};
-use crate::triangle::{LaneHits, Shear, Triangles};
-use crate::{Culling, Lanes};
+use crate::filter::Culling;
+use crate::precision::triangle::{LaneHits, Shear, Triangles};
+use crate::precision::triangle_test::Precision;
+use crate::precision::triangle_test::sealed::Test;
+use crate::precision::triangle_test::sides;
+use crate::simd::Lanes;
 
 /// The fastest test. A ray aimed at an edge may slip between the two triangles that share it, and
 /// distances to triangles seen edge-on may be off by more than roundings. Answers may differ

@@ -8,10 +8,14 @@
 
 use glam::DVec3;
 
-use super::{Precision, sealed::Test, sides};
 use crate::bounds::Bounds;
-use crate::triangle::{LaneHits, Shear, Triangles};
-use crate::{Culling, Lanes, Ray};
+use crate::filter::Culling;
+use crate::precision::triangle::{LaneHits, Shear, Triangles};
+use crate::precision::triangle_test::Precision;
+use crate::precision::triangle_test::sealed::Test;
+use crate::precision::triangle_test::sides;
+use crate::ray::Ray;
+use crate::simd::Lanes;
 
 /// Closed meshes have no holes: what a ray misses on one side of an edge, it hits on the other.
 /// The same bits on every instruction set.

@@ -2,6 +2,7 @@
 //! catalogue of hard numerical cases.
 
 mod agreement;
+mod cost;
 mod dispatched;
 mod instances;
 mod integers;

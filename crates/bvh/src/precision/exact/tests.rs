@@ -5,10 +5,13 @@ use num_bigint::{BigInt, Sign};
 
 use self::integers::{integer, quotient, triple_product};
 use super::Exact;
-use crate::bvh::TrianglePacket;
-use crate::precision::sealed::Test;
-use crate::triangle::Shear;
-use crate::{Culling, Lanes, Ray, Watertight};
+use crate::filter::Culling;
+use crate::layout::triangle_packet::TrianglePacket;
+use crate::precision::triangle::Shear;
+use crate::precision::triangle_test::sealed::Test;
+use crate::precision::watertight::Watertight;
+use crate::ray::Ray;
+use crate::simd::Lanes;
 
 #[path = "../../../tests/queries/integers.rs"]
 mod integers;

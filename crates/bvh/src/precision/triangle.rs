@@ -1,0 +1,214 @@
+//! Rays against triangles: what every precision's test starts from and returns.
+//!
+//! A test is written once and serves both arrangements: one ray against the triangles of a packet,
+//! a triangle a lane, and a packet of rays against one triangle, a ray a lane.
+
+use crate::layout::class::{Axes, axes};
+use crate::layout::columns::Columns;
+use crate::layout::triangle_packet::TrianglePacket;
+use crate::ray::Ray;
+use crate::simd::Lanes;
+use crate::simd::Stored;
+
+/// A triangle a lane.
+pub trait Triangles<S: Lanes<W>, const W: usize> {
+    /// One coordinate of one corner.
+    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float;
+    /// The corners in one lane.
+    fn corners(&self, lane: usize) -> [[f32; 3]; 3];
+}
+
+impl<S: Lanes<W>, const W: usize> Triangles<S, W> for &TrianglePacket<W> {
+    #[inline(always)]
+    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
+        simd.load(&self.vertices[vertex % 3][axis % 3])
+    }
+
+    #[inline(always)]
+    fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
+        self.vertices.map(|vertex| vertex.map(|row| row[lane % W]))
+    }
+}
+
+/// The same triangle in every lane.
+pub(crate) struct OneTriangle<'a, const P: usize> {
+    pub(crate) packet: &'a TrianglePacket<P>,
+    pub(crate) lane: usize,
+}
+
+impl<S: Lanes<W>, const W: usize, const P: usize> Triangles<S, W> for OneTriangle<'_, P> {
+    #[inline(always)]
+    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
+        simd.splat(self.packet.vertices[vertex % 3][axis % 3][self.lane % P])
+    }
+
+    #[inline(always)]
+    fn corners(&self, _: usize) -> [[f32; 3]; 3] {
+        self.packet
+            .vertices
+            .map(|vertex| vertex.map(|row| row[self.lane % P]))
+    }
+}
+
+/// Rays with the same order of axes, prepared for triangle tests: a translation and a shear take
+/// each to the z axis.
+///
+/// S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+pub struct Shear<'a, S: Lanes<W>, const W: usize> {
+    axes: Axes,
+    /// Origin, in that order.
+    org: [S::Float; 3],
+    /// `dir.x / dir.z` and `dir.y / dir.z`.
+    slope: [S::Float; 2],
+    /// `1 / dir.z`.
+    pub(crate) inv_z: S::Float,
+    pub(crate) tmin: S::Float,
+    /// Where the rays are, and which of them is in which lane; of no use in the lanes left over.
+    rays: &'a [Ray],
+    members: &'a [u16],
+}
+
+impl<'a, S: Lanes<W>, const W: usize> Shear<'a, S, W> {
+    /// One ray, in every lane.
+    #[inline(always)]
+    pub(crate) fn of_ray(simd: S, ray: &'a Ray, tmin: f32) -> Shear<'a, S, W> {
+        let axes = axes(ray);
+        let [kx, ky, kz] = axes;
+        Shear {
+            axes,
+            org: [
+                simd.splat(ray.org[kx]),
+                simd.splat(ray.org[ky]),
+                simd.splat(ray.org[kz]),
+            ],
+            slope: [
+                simd.splat(ray.dir[kx] / ray.dir[kz]),
+                simd.splat(ray.dir[ky] / ray.dir[kz]),
+            ],
+            inv_z: simd.splat(1.0 / ray.dir[kz]),
+            tmin: simd.splat(tmin),
+            rays: std::slice::from_ref(ray),
+            members: &[0],
+        }
+    }
+
+    /// A ray a lane, all with these axes: `members` of `rays`.
+    #[inline(always)]
+    pub(crate) fn of_rays(
+        simd: S,
+        columns: &Columns<W>,
+        rays: &'a [Ray],
+        members: &'a [u16],
+        axes: Axes,
+    ) -> Self {
+        let [kx, ky, kz] = axes;
+        let dir = axes.map(|axis| simd.load(&columns.dir[axis]));
+        Shear {
+            axes,
+            org: [
+                simd.load(&columns.org[kx]),
+                simd.load(&columns.org[ky]),
+                simd.load(&columns.org[kz]),
+            ],
+            slope: [simd.div(dir[0], dir[2]), simd.div(dir[1], dir[2])],
+            inv_z: simd.div(simd.splat(1.0), dir[2]),
+            tmin: simd.load(&columns.tmin),
+            rays,
+            members,
+        }
+    }
+
+    /// The ray in a lane.
+    #[inline(always)]
+    pub(crate) fn ray(&self, lane: usize) -> &'a Ray {
+        &self.rays[self.members[lane.min(self.members.len() - 1)] as usize]
+    }
+
+    /// A corner relative to the origin, in the order of the axes.
+    #[inline(always)]
+    pub(crate) fn relative(
+        &self,
+        simd: S,
+        triangles: &impl Triangles<S, W>,
+        vertex: usize,
+    ) -> [S::Float; 3] {
+        let relative = |axis: usize| {
+            let corner = triangles.corner(simd, vertex, self.axes[axis]);
+            simd.sub(corner, self.org[axis])
+        };
+        [relative(0), relative(1), relative(2)]
+    }
+
+    /// A corner in the space where the ray is the z axis; z is not scaled. Every operation rounds.
+    #[inline(always)]
+    pub(crate) fn sheared(
+        &self,
+        simd: S,
+        triangles: &impl Triangles<S, W>,
+        vertex: usize,
+    ) -> [S::Float; 3] {
+        let [x, y, z] = self.relative(simd, triangles, vertex);
+        [
+            simd.sub(x, simd.mul(self.slope[0], z)),
+            simd.sub(y, simd.mul(self.slope[1], z)),
+            z,
+        ]
+    }
+
+    /// As [`sheared`](Shear::sheared), negated in x and y, and fused.
+    #[inline(always)]
+    pub(crate) fn sheared_fast(
+        &self,
+        simd: S,
+        triangles: &impl Triangles<S, W>,
+        vertex: usize,
+    ) -> [S::Float; 3] {
+        let [x, y, z] = self.relative(simd, triangles, vertex);
+        [
+            simd.mul_sub(self.slope[0], z, x),
+            simd.mul_sub(self.slope[1], z, y),
+            z,
+        ]
+    }
+}
+
+/// Which lanes hit, and where.
+pub struct LaneHits<S: Lanes<W>, const W: usize> {
+    /// Lanes that hit, as bits.
+    pub(crate) lanes: u32,
+    /// Lanes hit from behind, as bits; meaningful for those that hit.
+    pub(crate) back: u32,
+    pub(crate) t: S::Float,
+    pub(crate) u: S::Float,
+    pub(crate) v: S::Float,
+}
+
+impl<S: Lanes<W>, const W: usize> LaneHits<S, W> {
+    /// Only the hits at a distance in `[tmin, tmax]`, if there are any.
+    #[inline(always)]
+    pub(crate) fn within(mut self, simd: S, tmin: S::Float, tmax: S::Float) -> Option<Self> {
+        let within = simd.and(simd.le(tmin, self.t), simd.le(self.t, tmax));
+        self.lanes &= simd.bits(within);
+        (self.lanes != 0).then_some(self)
+    }
+
+    /// Replaces `[t, u, v]` in some lanes.
+    #[inline(always)]
+    pub(crate) fn mend(&mut self, simd: S, lanes: u32, hit: impl Fn(usize) -> [f32; 3]) {
+        let [Stored(mut t), Stored(mut u), Stored(mut v)] = self.store(simd);
+        for lane in (0..W).filter(|lane| lanes >> lane & 1 == 1) {
+            [t[lane], u[lane], v[lane]] = hit(lane);
+        }
+        (self.t, self.u, self.v) = (simd.load(&t), simd.load(&u), simd.load(&v));
+    }
+
+    /// t, u and v of every lane; meaningful for the lanes that hit.
+    #[inline(always)]
+    pub(crate) fn store(&self, simd: S) -> [Stored<W>; 3] {
+        [
+            Stored::of(simd, self.t),
+            Stored::of(simd, self.u),
+            Stored::of(simd, self.v),
+        ]
+    }
+}

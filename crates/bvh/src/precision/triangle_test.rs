@@ -1,0 +1,62 @@
+//! What a precision is: a test of rays against triangles.
+
+use crate::filter::Culling;
+use crate::simd::Lanes;
+
+/// How exactly triangles are tested: [`Fast`](crate::Fast), [`Watertight`](crate::Watertight) or
+/// [`Exact`](crate::Exact). The same hierarchy serves all.
+pub trait Precision: sealed::Test {}
+
+pub(crate) mod sealed {
+    use crate::filter::Culling;
+    use crate::precision::triangle::{LaneHits, Shear, Triangles};
+    use crate::simd::Lanes;
+
+    /// The test itself.
+    pub trait Test: Copy + Default + Send + Sync + 'static {
+        /// The lanes whose ray meets its triangle at a distance in `[tmin, tmax]`, from the sides
+        /// that `culling` leaves. (Marks of single triangles are the caller's business: see
+        /// [`LaneHits::back`].)
+        #[doc(hidden)]
+        fn test<S: Lanes<W>, const W: usize>(
+            self,
+            simd: S,
+            rays: &Shear<'_, S, W>,
+            triangles: impl Triangles<S, W>,
+            tmax: S::Float,
+            culling: Culling,
+        ) -> Option<LaneHits<S, W>>;
+    }
+}
+
+/// Lanes whose ray passes inside their triangle, as bits.
+pub(crate) struct Inside {
+    /// On the sides of interest.
+    pub(crate) lanes: u32,
+    /// From behind.
+    pub(crate) back: u32,
+}
+
+/// Inside a triangle the three weights have the same sign, or are zero; in front it is positive.
+/// Of NaN, from coordinates whose products overflow, nothing is said.
+#[inline(always)]
+pub(crate) fn sides<S: Lanes<W>, const W: usize>(
+    simd: S,
+    [w, u, v]: [S::Float; 3],
+    culling: Culling,
+) -> Inside {
+    let zero = simd.splat(0.0);
+    let least = simd.min_number(simd.min_number(w, u), v);
+    let front = simd.bits(simd.le(zero, least));
+    let back = match culling {
+        Culling::Back => 0,
+        Culling::None | Culling::PerTriangle => {
+            let greatest = simd.max_number(simd.max_number(w, u), v);
+            simd.bits(simd.le(greatest, zero))
+        }
+    };
+    Inside {
+        lanes: front | back,
+        back: back & !front,
+    }
+}

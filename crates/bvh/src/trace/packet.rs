@@ -1,0 +1,311 @@
+//! The packet kernel: `R` rays together, against one box or one triangle at once; and the hybrid
+//! one, which goes on with single rays where few of a packet's rays agree.
+//!
+//! A packet's rays have their octant and their order of axes in common, so that which planes are
+//! entered and which axes are sheared is known for all: `stream.rs` sorts them so. At a node, the
+//! envelope of the packet is tested against all `N` boxes as a single ray would be; then the rays
+//! against each box that it touches.
+
+use std::mem::MaybeUninit;
+
+use crate::filter::improve;
+use crate::filter::{Culling, HitFilter};
+use crate::layout::boxes::Boxes;
+use crate::layout::bvh::BvhView;
+use crate::layout::child::Child;
+use crate::layout::class::Class;
+use crate::layout::columns::{Columns, greatest};
+use crate::layout::triangle_packet::SINGLE_SIDED;
+use crate::layout::validate::MAX_DEPTH;
+use crate::precision::triangle::{LaneHits, OneTriangle, Shear};
+use crate::precision::triangle_test::Precision;
+use crate::ray::{Hit, Ray};
+use crate::simd::Lanes;
+use crate::simd::Stored;
+use crate::trace::prefetch::prefetch_child;
+use crate::trace::single::{query, search};
+use crate::trace::slab::Slab;
+
+/// What stays the same for all packets of a stream.
+pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F, B> {
+    pub(crate) simd: S,
+    pub(crate) precision: Pr,
+    pub(crate) bvh: BvhView<'a, N, P, B>,
+    pub(crate) filter: &'a F,
+    /// So many rays of a packet, or fewer, are traced as single rays.
+    pub(crate) few: u32,
+}
+
+/// A subtree yet to visit.
+#[derive(Clone, Copy)]
+struct Entry {
+    /// Where the packet's envelope enters it.
+    distance: f32,
+    child: Child,
+    /// The rays that touch it.
+    rays: u32,
+}
+
+/// As in `stack.rs`: each level leaves at most N - 1 siblings behind.
+const STACK_CAPACITY: usize = MAX_DEPTH * 16;
+
+impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>>
+    PacketKernel<'_, S, N, P, Pr, F, B>
+{
+    /// Traces one ray alone.
+    #[inline(always)]
+    pub(crate) fn single<const ANY: bool>(&self, ray: &Ray) -> Hit
+    where
+        S: Lanes<N> + Lanes<P>,
+    {
+        query::<S, N, P, Pr, F, B, ANY>(self.simd, self.precision, self.bvh, ray, self.filter)
+    }
+
+    /// Traces at most `R` rays of one class, which `members` number and `columns` hold.
+    #[inline(always)]
+    pub(crate) fn trace<const R: usize, const ANY: bool>(
+        &self,
+        mut columns: Columns<R>,
+        rays: &[Ray],
+        members: &[u16],
+        class: Class,
+        hits: &mut [Hit],
+    ) where
+        S: Lanes<N> + Lanes<P> + Lanes<R>,
+    {
+        let simd = self.simd;
+        columns.clip(members.len());
+        let envelope = Slab::<S, N>::enclosing(simd, &columns, class.octant);
+        let slab = Slab::<S, R>::of_rays(simd, &columns, class.octant);
+        let shear = Shear::<S, R>::of_rays(simd, &columns, rays, members, class.axes);
+
+        let mut best = Best::new(&columns);
+        let mut farthest = greatest(best.t);
+        let mut alive = u32::MAX >> (32 - members.len());
+        let mut stack = [const { MaybeUninit::<Entry>::uninit() }; STACK_CAPACITY];
+        let mut len = 0;
+        let mut child = Child::ROOT;
+        let mut active = alive;
+        loop {
+            if active.count_ones() <= self.few {
+                for lane in lanes(active) {
+                    // SAFETY: this is the root or a child of one of the hierarchy's nodes.
+                    let hit = unsafe {
+                        search::<S, N, P, Pr, F, B, ANY>(
+                            simd,
+                            self.precision,
+                            self.bvh,
+                            child,
+                            &rays[members[lane] as usize],
+                            columns.tmin[lane],
+                            self.filter,
+                            best.hit(lane),
+                        )
+                    };
+                    best.set::<ANY>(lane, &hit);
+                }
+                farthest = greatest(best.t);
+            } else if child.is_leaf() {
+                if self.leaf::<R, ANY>(child, &shear, &mut best) {
+                    farthest = greatest(best.t);
+                }
+            } else {
+                // SAFETY: children that are not leaves index the nodes of a sound hierarchy.
+                let node = unsafe { self.bvh.nodes().get_unchecked(child.0 as usize) };
+                let (mut touched, entry) = envelope.touched_children(simd, node, farthest);
+                let Stored(distances) = Stored::<N>::of(simd, entry);
+                let base = len;
+                while touched != 0 {
+                    // The last first: pushed in reverse, children come in their order.
+                    let slot = (31 - touched.leading_zeros()) as usize % N;
+                    touched &= !(1 << slot);
+                    let touching = active & slab.touching_rays(simd, node, slot, &best.t);
+                    if touching == 0 {
+                        continue;
+                    }
+                    let child = Child(node.children()[slot]);
+                    prefetch_child(self.bvh.nodes(), self.bvh.packets(), child);
+                    let entry = Entry {
+                        distance: distances[slot],
+                        child,
+                        rays: touching,
+                    };
+                    // Insertion, nearest on top; where any hit will do, the order is the builder's.
+                    let mut place = len;
+                    while !ANY && place > base {
+                        // SAFETY: entries below `len` are initialised.
+                        let other = unsafe { stack[place - 1].assume_init() };
+                        if other.distance >= entry.distance {
+                            break;
+                        }
+                        stack[place].write(other);
+                        place -= 1;
+                    }
+                    stack[place].write(entry);
+                    len += 1;
+                }
+            }
+            if ANY {
+                alive = 0;
+                for (lane, &tmax) in best.t.iter().enumerate() {
+                    alive |= u32::from(tmax >= 0.0) << lane;
+                }
+            }
+            let next = loop {
+                if len == 0 {
+                    break None;
+                }
+                len -= 1;
+                // SAFETY: this was below `len` until now.
+                let entry = unsafe { stack[len].assume_init() };
+                if entry.rays & alive != 0 && entry.distance <= farthest {
+                    break Some(entry);
+                }
+            };
+            match next {
+                Some(entry) => (child, active) = (entry.child, entry.rays & alive),
+                None => break,
+            }
+        }
+        for (lane, &member) in members.iter().enumerate() {
+            let hit = best.hit(lane);
+            hits[member as usize] = if hit.is_hit() {
+                hit
+            } else {
+                Hit::miss(rays[member as usize].tmax)
+            };
+        }
+    }
+
+    /// Tests the leaf's triangles. Returns whether there were hits.
+    #[inline(always)]
+    fn leaf<const R: usize, const ANY: bool>(
+        &self,
+        leaf: Child,
+        shear: &Shear<'_, S, R>,
+        best: &mut Best<R>,
+    ) -> bool
+    where
+        S: Lanes<R>,
+    {
+        let simd = self.simd;
+        let mut found = false;
+        let first = leaf.first_packet();
+        for packet in &self.bvh.packets()[first..first + leaf.packet_count()] {
+            for lane in 0..P {
+                let prim = packet.prim_ids[lane];
+                if prim == u32::MAX {
+                    break;
+                }
+                let triangle = OneTriangle { packet, lane };
+                let ends = simd.load(&best.t);
+                let test = self.precision.test(simd, shear, triangle, ends, F::CULLING);
+                let Some(mut test) = test else { continue };
+                // Rays that are strictly nearer need no second look, unless there is a filter.
+                if !F::REJECTS && !matches!(F::CULLING, Culling::PerTriangle) {
+                    let nearer = test.lanes & simd.bits(simd.lt(test.t, ends));
+                    best.improve::<S, ANY>(simd, &test, nearer, prim & !SINGLE_SIDED);
+                    test.lanes &= !nearer;
+                    found |= nearer != 0;
+                }
+                if test.lanes == 0 {
+                    continue;
+                }
+                let [Stored(t), Stored(u), Stored(v)] = test.store(simd);
+                for lane in lanes(test.lanes) {
+                    let hit = Hit {
+                        t: t[lane],
+                        u: u[lane],
+                        v: v[lane],
+                        prim,
+                    };
+                    let back = test.back >> lane & 1 == 1;
+                    let mut improved = best.hit(lane);
+                    if improve(&mut improved, hit, back, shear.ray(lane), self.filter) {
+                        best.set::<ANY>(lane, &improved);
+                        found = true;
+                    }
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The rays' hits so far.
+#[repr(align(64))]
+struct Best<const R: usize> {
+    /// Where the interval ends: at the hit, or where any will do, before it begins. So it does in
+    /// lanes left over.
+    t: [f32; R],
+    u: [f32; R],
+    v: [f32; R],
+    /// The bits of triangle numbers.
+    prim: [f32; R],
+}
+
+impl<const R: usize> Best<R> {
+    #[inline(always)]
+    fn new(columns: &Columns<R>) -> Best<R> {
+        Best {
+            t: columns.tmax,
+            u: [0.0; R],
+            v: [0.0; R],
+            prim: [f32::from_bits(Hit::NONE); R],
+        }
+    }
+
+    #[inline(always)]
+    fn hit(&self, lane: usize) -> Hit {
+        Hit {
+            t: self.t[lane],
+            u: self.u[lane],
+            v: self.v[lane],
+            prim: self.prim[lane].to_bits(),
+        }
+    }
+
+    #[inline(always)]
+    fn set<const ANY: bool>(&mut self, lane: usize, hit: &Hit) {
+        self.t[lane] = if ANY && hit.is_hit() { -1.0 } else { hit.t };
+        self.u[lane] = hit.u;
+        self.v[lane] = hit.v;
+        self.prim[lane] = f32::from_bits(hit.prim);
+    }
+
+    /// Takes the hits of some lanes with one triangle.
+    #[inline(always)]
+    fn improve<S: Lanes<R>, const ANY: bool>(
+        &mut self,
+        simd: S,
+        hits: &LaneHits<S, R>,
+        lanes: u32,
+        prim: u32,
+    ) {
+        let replace = |column: &mut [f32; R], new: S::Float| {
+            simd.store(simd.select(lanes, new, simd.load(column)), column);
+        };
+        replace(&mut self.prim, simd.splat(f32::from_bits(prim)));
+        if ANY {
+            replace(&mut self.t, simd.splat(-1.0));
+        } else {
+            replace(&mut self.t, hits.t);
+            replace(&mut self.u, hits.u);
+            replace(&mut self.v, hits.v);
+        }
+    }
+}
+
+/// The numbers of the bits that are set.
+#[inline(always)]
+fn lanes(bits: u32) -> impl Iterator<Item = usize> {
+    let mut rest = bits;
+    std::iter::from_fn(
+        #[inline(always)]
+        move || {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest.wrapping_sub(1);
+            (lane < 32).then_some(lane)
+        },
+    )
+}

@@ -1,0 +1,217 @@
+//! The single-ray kernel: `N` boxes, or `P` triangles, at once.
+
+use std::ops::ControlFlow;
+
+use crate::filter::HitFilter;
+use crate::filter::improve;
+use crate::layout::boxes::Boxes;
+use crate::layout::bvh::BvhView;
+use crate::layout::child::Child;
+use crate::layout::triangle_packet::TrianglePacket;
+use crate::precision::triangle::Shear;
+use crate::precision::triangle_test::Precision;
+use crate::ray::{Hit, Ray};
+use crate::simd::Lanes;
+use crate::simd::Stored;
+use crate::trace::slab::Slab;
+use crate::trace::traverse::{Visitor, traverse};
+
+/// The nearest hit in the ray's interval that `filter` accepts; of several at the same distance,
+/// the one with the smallest triangle index.
+#[inline(always)]
+pub fn closest_hit<S, const N: usize, const P: usize>(
+    simd: S,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
+    ray: &Ray,
+    filter: &impl HitFilter,
+) -> Hit
+where
+    S: Lanes<N> + Lanes<P>,
+{
+    query::<S, N, P, _, _, _, false>(simd, precision, bvh, ray, filter)
+}
+
+/// Whether there is a hit in the ray's interval that `filter` accepts: exactly when
+/// [`closest_hit`] finds one.
+#[inline(always)]
+pub fn any_hit<S, const N: usize, const P: usize>(
+    simd: S,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
+    ray: &Ray,
+    filter: &impl HitFilter,
+) -> bool
+where
+    S: Lanes<N> + Lanes<P>,
+{
+    query::<S, N, P, _, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
+}
+
+/// Either query; where any hit will do, the hit is any.
+#[inline(always)]
+pub(crate) fn query<
+    S,
+    const N: usize,
+    const P: usize,
+    Pr: Precision,
+    F: HitFilter,
+    B: Boxes<N>,
+    const ANY: bool,
+>(
+    simd: S,
+    precision: Pr,
+    bvh: BvhView<'_, N, P, B>,
+    ray: &Ray,
+    filter: &F,
+) -> Hit
+where
+    S: Lanes<N> + Lanes<P>,
+{
+    if !ray.is_valid() {
+        return Hit::miss(ray.tmax);
+    }
+    let (tmin, tmax) = ray.interval();
+    // SAFETY: the root is there.
+    let best = unsafe {
+        search::<S, N, P, Pr, F, B, ANY>(
+            simd,
+            precision,
+            bvh,
+            Child::ROOT,
+            ray,
+            tmin,
+            filter,
+            Hit::miss(tmax),
+        )
+    };
+    if best.is_hit() {
+        best
+    } else {
+        Hit::miss(ray.tmax)
+    }
+}
+
+/// Improves `best` by what lies below `start`. The ray is valid, `tmin` not negative.
+///
+/// # Safety
+/// `start` must be the hierarchy's root or one of its nodes' children.
+#[inline(always)]
+pub(crate) unsafe fn search<S, const N: usize, const P: usize, Pr, F, B, const ANY: bool>(
+    simd: S,
+    precision: Pr,
+    bvh: BvhView<'_, N, P, B>,
+    start: Child,
+    ray: &Ray,
+    tmin: f32,
+    filter: &F,
+    best: Hit,
+) -> Hit
+where
+    S: Lanes<N> + Lanes<P>,
+    Pr: Precision,
+    F: HitFilter,
+    B: Boxes<N>,
+{
+    let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
+    let packets = bvh.packets();
+    let mut search =
+        Search::<S, P, Pr, F, ANY>::new(simd, precision, packets, ray, tmin, filter, best);
+    // SAFETY: the view is structurally valid, and the start is by this function's contract.
+    unsafe { traverse(simd, bvh.nodes(), start, &slab, &mut search) };
+    search.best
+}
+
+/// The search for one ray's hit.
+pub(crate) struct Search<'a, S: Lanes<P>, const P: usize, Pr, F, const ANY: bool> {
+    simd: S,
+    precision: Pr,
+    packets: &'a [TrianglePacket<P>],
+    shear: Shear<'a, S, P>,
+    ray: &'a Ray,
+    filter: &'a F,
+    best: Hit,
+}
+
+impl<S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
+    for Search<'_, S, P, Pr, F, ANY>
+{
+    const ANY: bool = ANY;
+    type Item = TrianglePacket<P>;
+
+    #[inline(always)]
+    fn items(&self) -> &[TrianglePacket<P>] {
+        self.packets
+    }
+
+    #[inline(always)]
+    fn tmax(&self) -> f32 {
+        self.best.t
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, leaf: Child) -> ControlFlow<()> {
+        for index in leaf.first_packet()..leaf.first_packet() + leaf.packet_count() {
+            // SAFETY: the leaves of a sound hierarchy have packets that exist.
+            let packet = unsafe { self.packets.get_unchecked(index) };
+            self.packet(packet)?;
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl<'a, S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>
+    Search<'a, S, P, Pr, F, ANY>
+{
+    /// For a hit better than `best`. The ray is valid, `tmin` not negative.
+    #[inline(always)]
+    pub(crate) fn new(
+        simd: S,
+        precision: Pr,
+        packets: &'a [TrianglePacket<P>],
+        ray: &'a Ray,
+        tmin: f32,
+        filter: &'a F,
+        best: Hit,
+    ) -> Self {
+        Search {
+            simd,
+            precision,
+            packets,
+            shear: Shear::of_ray(simd, ray, tmin),
+            ray,
+            filter,
+            best,
+        }
+    }
+
+    /// Improves the best hit by the packet's triangles. Breaks where any hit will do.
+    #[inline(always)]
+    fn packet(&mut self, packet: &TrianglePacket<P>) -> ControlFlow<()> {
+        let tmax = self.simd.splat(self.best.t);
+        let hits = self
+            .precision
+            .test(self.simd, &self.shear, packet, tmax, F::CULLING);
+        let Some(hits) = hits else {
+            return ControlFlow::Continue(());
+        };
+        let [Stored(t), Stored(u), Stored(v)] = hits.store(self.simd);
+        let mut lanes = hits.lanes;
+        while lanes != 0 {
+            // The remainder keeps a lane in range for the compiler; hits have bits in 0..P only.
+            let lane = lanes.trailing_zeros() as usize % P;
+            lanes &= lanes - 1;
+            let hit = Hit {
+                t: t[lane],
+                u: u[lane],
+                v: v[lane],
+                prim: packet.prim_ids[lane],
+            };
+            let back = hits.back >> lane & 1 == 1;
+            if improve(&mut self.best, hit, back, self.ray, self.filter) && ANY {
+                return ControlFlow::Break(());
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,273 @@
+//! Rays against boxes: the slab test, conservative under rounding.
+//!
+//! T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013. The distance to a plane is
+//! `scale * plane + shift`, one fused operation, with `scale = 1 / dir` and
+//! `shift = -org / dir`. What that cancels, and more, is folded into the ray's constants:
+//! - `scale` is shrunk for entries and stretched for exits by 2⁻²⁰: the product's roundings and
+//!   those of the triangle test, all relative to the distance;
+//! - `shift` is moved by 2⁻²² of itself, for the roundings relative to the origin's coordinates.
+//!   In space that is two units in the last place of the origin.
+//!
+//! A component of the direction below 2⁻⁶⁴ of the greatest counts as that: a ray lying in a plane
+//! of a box then enters it. Where a constant overflows, the distances are NaN, which the minimum
+//! and maximum drop: the axis does not cull.
+//!
+//! The same test serves one ray against the `N` boxes of a node, `N` rays against one box, and the
+//! envelope of a packet of rays against `N` boxes.
+
+use crate::layout::boxes::Boxes;
+use crate::layout::class::Octant;
+use crate::layout::columns::{Columns, greatest, least};
+use crate::ray::Ray;
+use crate::simd::Lanes;
+
+const STRETCH: f32 = 1.0 / (1 << 20) as f32;
+const REACH: f32 = 1.0 / (1 << 22) as f32;
+/// Least component of a direction, relative to the greatest.
+const LEAST: f32 = 1.0 / (1u128 << 64) as f32;
+
+/// `scale` and `shift` of the entry and the exit planes' distances, `[axis]` and one more.
+#[derive(Clone, Copy)]
+struct Constants {
+    near_scale: [f32; 4],
+    near_shift: [f32; 4],
+    far_scale: [f32; 4],
+    far_shift: [f32; 4],
+}
+
+impl Constants {
+    /// For rays from `near_org`, as slow as `near_inv`, into the boxes and from `far_org`, as
+    /// fast as `far_inv`, out of them. The axes are lanes.
+    #[inline(always)]
+    fn new<S: Lanes<4>>(
+        simd: S,
+        near_org: [f32; 4],
+        near_inv: S::Float,
+        far_org: [f32; 4],
+        far_inv: S::Float,
+    ) -> Self {
+        let near_scale = simd.mul(near_inv, simd.splat(1.0 - STRETCH));
+        let far_scale = simd.mul(far_inv, simd.splat(1.0 + STRETCH));
+        let near_shift = shift(simd, simd.load(&near_org), near_scale, -REACH);
+        let far_shift = shift(simd, simd.load(&far_org), far_scale, REACH);
+        let array = |lanes: S::Float| {
+            let mut array = [0.0; 4];
+            simd.store(lanes, &mut array);
+            array
+        };
+        Constants {
+            near_scale: array(near_scale),
+            near_shift: array(near_shift),
+            far_scale: array(far_scale),
+            far_shift: array(far_shift),
+        }
+    }
+}
+
+/// `-org * scale`, moved by `reach` of itself.
+#[inline(always)]
+fn shift<S: Lanes<W>, const W: usize>(
+    simd: S,
+    org: S::Float,
+    scale: S::Float,
+    reach: f32,
+) -> S::Float {
+    let shift = simd.mul(org, scale);
+    simd.mul_sub(simd.abs(shift), simd.splat(reach), shift)
+}
+
+/// The inverse of components of directions, of which `longest` are the greatest, from their signs
+/// and sizes.
+#[inline(always)]
+fn inverse<S: Lanes<W>, const W: usize>(
+    simd: S,
+    sign: S::Float,
+    size: S::Float,
+    longest: S::Float,
+) -> S::Float {
+    let least = simd.mul(longest, simd.splat(LEAST));
+    simd.div(sign, simd.max_number(size, least))
+}
+
+/// The inverse directions of a packet's rays.
+#[inline(always)]
+fn inverse_of_rays<S: Lanes<R>, const R: usize>(
+    simd: S,
+    rays: &Columns<R>,
+    octant: Octant,
+) -> [S::Float; 3] {
+    let size = [0, 1, 2].map(|axis| simd.abs(simd.load(&rays.dir[axis])));
+    let longest = simd.max_number(simd.max_number(size[0], size[1]), size[2]);
+    [0, 1, 2].map(|axis| {
+        let sign = simd.splat(if octant[axis] { -1.0 } else { 1.0 });
+        inverse(simd, sign, size[axis], longest)
+    })
+}
+
+/// One ray's constants, and its octant.
+#[inline(always)]
+fn constants_of_ray<S: Lanes<4>>(simd: S, ray: &Ray) -> (Constants, Octant) {
+    // As they lie in memory; what comes last is of no use.
+    let lanes = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last];
+    let dir = simd.load(&lanes(ray.dir, ray.tmax));
+    let negative = simd.bits(simd.lt(dir, simd.splat(0.0)));
+    let sign = simd.select(negative, simd.splat(-1.0), simd.splat(1.0));
+    // Not the inverse of `tmax`: of `f32::MAX` it is denormal, which costs as much as a node.
+    let longest = simd.splat(ray.longest());
+    let size = simd.select(0b111, simd.abs(dir), longest);
+    let inv = inverse(simd, sign, size, longest);
+    let org = lanes(ray.org, ray.tmin);
+    let octant = [0, 1, 2].map(|axis| negative >> axis & 1 == 1);
+    (Constants::new(simd, org, inv, org, inv), octant)
+}
+
+/// Rays of one octant, prepared for slab tests. Distances are in units of their directions.
+pub(crate) struct Slab<S: Lanes<N>, const N: usize> {
+    near_scale: [S::Float; 3],
+    near_shift: [S::Float; 3],
+    far_scale: [S::Float; 3],
+    far_shift: [S::Float; 3],
+    /// Row of the entry plane in a node's bounds; its exit plane's is this with the low bit
+    /// flipped.
+    near_row: [usize; 3],
+    tmin: S::Float,
+}
+
+impl<S: Lanes<N>, const N: usize> Slab<S, N> {
+    /// One ray, in every lane. `tmin` must not be negative: the slack would then point the wrong
+    /// way.
+    #[inline(always)]
+    pub(crate) fn of_ray(simd: S, ray: &Ray, tmin: f32) -> Slab<S, N>
+    where
+        S: Lanes<4>,
+    {
+        let (constants, octant) = constants_of_ray(simd, ray);
+        Slab::splat(simd, &constants, octant, tmin)
+    }
+
+    /// A ray a lane, all of one octant, and valid.
+    #[inline(always)]
+    pub(crate) fn of_rays(simd: S, rays: &Columns<N>, octant: Octant) -> Slab<S, N> {
+        let axes = [0, 1, 2];
+        let inv = inverse_of_rays(simd, rays, octant);
+        let scale = |by: f32| axes.map(|axis| simd.mul(inv[axis], simd.splat(by)));
+        let (near_scale, far_scale) = (scale(1.0 - STRETCH), scale(1.0 + STRETCH));
+        let shift = |scale: [S::Float; 3], reach: f32| {
+            axes.map(|axis| shift(simd, simd.load(&rays.org[axis]), scale[axis], reach))
+        };
+        Slab {
+            near_scale,
+            near_shift: shift(near_scale, -REACH),
+            far_scale,
+            far_shift: shift(far_scale, REACH),
+            near_row: near_rows(octant),
+            tmin: simd.load(&rays.tmin),
+        }
+    }
+
+    /// What encloses all rays, which are of one octant and valid, in every lane: it enters a box
+    /// no later, and leaves it no earlier, than any of them.
+    #[inline(always)]
+    pub(crate) fn enclosing<const R: usize>(
+        simd: S,
+        rays: &Columns<R>,
+        octant: Octant,
+    ) -> Slab<S, N>
+    where
+        S: Lanes<R> + Lanes<4>,
+    {
+        let inv = inverse_of_rays(simd, rays, octant);
+        let (mut near_org, mut far_org) = ([0.0; 4], [0.0; 4]);
+        let (mut near_inv, mut far_inv) = ([0.0; 4], [0.0; 4]);
+        for axis in 0..3 {
+            let mut inverse = [0.0; R];
+            simd.store(inv[axis], &mut inverse);
+            let (lo_org, hi_org) = (least(rays.org[axis]), greatest(rays.org[axis]));
+            let (lo_inv, hi_inv) = (least(inverse), greatest(inverse));
+            // Where planes lie behind an origin the bounds are wrong, but below zero as they
+            // should.
+            (near_org[axis], far_org[axis], near_inv[axis], far_inv[axis]) = if octant[axis] {
+                (lo_org, hi_org, hi_inv, lo_inv)
+            } else {
+                (hi_org, lo_org, lo_inv, hi_inv)
+            };
+        }
+        let [near_inv, far_inv] = [near_inv, far_inv].map(|inv| <S as Lanes<4>>::load(simd, &inv));
+        let constants = Constants::new(simd, near_org, near_inv, far_org, far_inv);
+        Slab::splat(simd, &constants, octant, least(rays.tmin))
+    }
+
+    #[inline(always)]
+    fn splat(simd: S, constants: &Constants, octant: Octant, tmin: f32) -> Slab<S, N> {
+        let splat = |x: [f32; 4]| [simd.splat(x[0]), simd.splat(x[1]), simd.splat(x[2])];
+        Slab {
+            near_scale: splat(constants.near_scale),
+            near_shift: splat(constants.near_shift),
+            far_scale: splat(constants.far_scale),
+            far_shift: splat(constants.far_shift),
+            near_row: near_rows(octant),
+            tmin: simd.splat(tmin),
+        }
+    }
+
+    /// The lanes whose ray touches its box within `[tmin, tmax]`, as bits, and where it enters.
+    /// `plane(axis, row)` gives the boxes' planes as [`Boxes::plane`].
+    #[inline(always)]
+    fn touched(
+        &self,
+        simd: S,
+        plane: impl Fn(usize, usize) -> S::Float,
+        tmax: S::Float,
+    ) -> (u32, S::Float) {
+        let near = |axis: usize| {
+            let plane = plane(axis, self.near_row[axis]);
+            simd.mul_add(plane, self.near_scale[axis], self.near_shift[axis])
+        };
+        let far = |axis: usize| {
+            let plane = plane(axis, self.near_row[axis] ^ 1);
+            simd.mul_add(plane, self.far_scale[axis], self.far_shift[axis])
+        };
+        let entry = simd.max_number(near(0), self.tmin);
+        let entry = simd.max_number(near(2), simd.max_number(near(1), entry));
+        let exit = simd.min_number(far(0), tmax);
+        let exit = simd.min_number(far(2), simd.min_number(far(1), exit));
+        (simd.bits(simd.le(entry, exit)), entry)
+    }
+
+    /// One ray, or an envelope, against the boxes of a node.
+    #[inline(always)]
+    pub(crate) fn touched_children(
+        &self,
+        simd: S,
+        node: &impl Boxes<N>,
+        tmax: f32,
+    ) -> (u32, S::Float) {
+        let plane = |axis: usize, row: usize| {
+            // SAFETY: near rows are of their axis, and so are they with the low bit flipped.
+            unsafe { node.plane(simd, axis, row) }
+        };
+        let (touched, entry) = self.touched(simd, plane, simd.splat(tmax));
+        (touched & node.used(), entry)
+    }
+
+    /// A ray a lane against one box of a node.
+    #[inline(always)]
+    pub(crate) fn touching_rays<const W: usize>(
+        &self,
+        simd: S,
+        node: &impl Boxes<W>,
+        slot: usize,
+        tmax: &[f32; N],
+    ) -> u32 {
+        let plane = |axis: usize, row: usize| simd.splat(node.plane_of(slot, axis, row));
+        self.touched(simd, plane, simd.load(tmax)).0
+    }
+}
+
+#[inline(always)]
+fn near_rows(octant: Octant) -> [usize; 3] {
+    [0, 1, 2].map(|axis| 2 * axis + octant[axis] as usize)
+}
+
+#[cfg(test)]
+mod tests;
