@@ -6,10 +6,8 @@ use std::path::PathBuf;
 
 fn main() {
     let package = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
-    let code = env::var_os("RESIDUAL_SCENE").map_or_else(
-        || package.join("src").join("no_scene.rs"),
-        PathBuf::from,
-    );
+    let code = env::var_os("RESIDUAL_SCENE")
+        .map_or_else(|| package.join("src").join("no_scene.rs"), PathBuf::from);
     println!("cargo::rerun-if-env-changed=RESIDUAL_SCENE");
     println!("cargo::rustc-env=RESIDUAL_EMITTED_CODE={}", code.display());
 }
