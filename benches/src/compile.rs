@@ -5,9 +5,9 @@ use std::fmt::Write;
 use anyhow::{Result, anyhow};
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use residual_metrics::Estimate;
 use serde_json::{Value, json};
 
-use crate::measure::Estimate;
 use crate::report::interval;
 
 /// What it takes to get one scene's renderer for one device. Times are seconds on the clock.

@@ -3,9 +3,8 @@
 use std::ops::ControlFlow;
 
 use residual_device_cpu::{Counters, CpuDevice, RenderOptions, SceneView, TileRenderer};
+use residual_metrics::Estimate;
 use serde_json::{Value, json};
-
-use crate::measure::Estimate;
 
 /// One way to render a scene.
 pub struct RenderContender<'a> {

@@ -1,9 +1,9 @@
 //! What is found out, as tables for people and as JSON for programs.
 
+use residual_metrics::Estimate;
 use serde_json::{Value, json};
 
 use crate::isa::Isa;
-use crate::measure::Estimate;
 use crate::rays::RayKind;
 
 /// What a contender is, in words.

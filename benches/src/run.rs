@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use anyhow::{Result, ensure};
+use residual_metrics::Estimate;
 
 use crate::contender::Contender;
 use crate::embree::{Embree, EmbreeContender, EmbreeScene, Mode, Quality};
 use crate::isa::Isa;
-use crate::measure::{Estimate, Measured, Pinned, interleaved};
+use crate::measure::{Measured, Pinned, interleaved};
 use crate::ours::{self, Kernel, Precision, Trees};
 use crate::peers;
 use crate::rays::{Query, RayKind, RaySet, ray_sets};

@@ -1,19 +1,13 @@
-//! Puts emitted code in place: the file that `RESIDUAL_SCENE` names, if it does.
+//! Says where the emitted code is: in the file that `RESIDUAL_SCENE` names, or in `src/no_scene.rs` without it. The build
+//! script of all crates that are built around emitted code.
 
+use std::env;
 use std::path::PathBuf;
-use std::{env, fs};
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
+    let package = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
+    let code = env::var_os("RESIDUAL_SCENE")
+        .map_or_else(|| package.join("src").join("no_scene.rs"), PathBuf::from);
     println!("cargo::rerun-if-env-changed=RESIDUAL_SCENE");
-    let code = match env::var_os("RESIDUAL_SCENE") {
-        Some(file) => {
-            let file = PathBuf::from(file);
-            println!("cargo::rerun-if-changed={}", file.display());
-            fs::read_to_string(&file).expect("xtask wrote the file before it called cargo")
-        }
-        None => "".to_owned(),
-    };
-    let place = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it")).join("scene.rs");
-    fs::write(place, code).expect("the directory is cargo's");
+    println!("cargo::rustc-env=RESIDUAL_EMITTED_CODE={}", code.display());
 }

@@ -9,8 +9,9 @@ use residual_benches::code_size::{CodeRow, code_lines, code_sizes, code_table};
 use residual_benches::compile::{
     CompileRow, LibraryRow, compile_heading, compile_summary, validate_wgsl,
 };
-use residual_benches::measure::{Estimate, children_time};
+use residual_benches::measure::children_time;
 use residual_device_cpu::LaneCount;
+use residual_metrics::Estimate;
 use residual_scenegen::emit::wgsl_module;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};

@@ -7,14 +7,12 @@
 use std::ops::ControlFlow;
 
 use anyhow::{Context, Result};
-use residual_benches::flip::flip;
-use residual_benches::image_error::{Jackknifed, relative_mse};
-use residual_benches::measure::Estimate;
 use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{
     AnyBvh, CpuDevice, Interpreter, LaneCount, Progress, RenderOptions, SceneView, TileRenderer,
 };
 use residual_frontend::{hierarchy_quality, process_time};
+use residual_metrics::{Estimate, Jackknifed, flip, relative_mse};
 use residual_render::alpha::AlphaTest;
 use residual_render::program::{AlphaNode, BsdfNode, LightNode, Program, ScalarNode};
 use residual_render::surface::Attributes;

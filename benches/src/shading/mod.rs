@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use residual_device_cpu::{Interpreter, LaneCount, SceneView, TileJob, TileRenderer};
+use residual_metrics::Estimate;
 use residual_render::camera::AnyCamera;
 use residual_render::layer::Layers;
 use residual_render::program::{LightNode, Structure};
@@ -27,7 +28,7 @@ use serde_json::{Value, json};
 use self::interfaces::{CasesRenderer, Known};
 use self::kinds::{Inputs, Kind};
 use self::stream::Hits;
-use crate::measure::{Estimate, thread_time};
+use crate::measure::thread_time;
 
 /// The job: the side of its tile is the root of the hits' number.
 const SIDE: u32 = 64;

@@ -20,7 +20,7 @@ use residual_render::scene_data::SceneData;
     reason = "emitted code may as well be included in a public module"
 )]
 mod scene {
-    include!(concat!(env!("OUT_DIR"), "/scene.rs"));
+    include!(env!("RESIDUAL_EMITTED_CODE"));
 }
 
 /// A scene as its program carries it.

@@ -1,23 +1,4 @@
-//! How far an image is from another, in numbers.
-
-/// Relative mean squared error: the mean over pixels and channels of (test − reference)² / (reference² + ε), where ε is a
-/// hundredth of the squared mean of the reference, as in [`Film::error`](residual_render::film::Film::error).
-///
-/// # Panics
-/// If the images differ in size.
-pub fn relative_mse(reference: &[[f32; 3]], test: &[[f32; 3]]) -> f64 {
-    assert_eq!(reference.len(), test.len());
-    let count = (3 * reference.len()).max(1) as f64;
-    let values = || reference.as_flattened().iter().map(|&c| f64::from(c));
-    let mean = values().sum::<f64>() / count;
-    let floor = 1e-2 * mean * mean;
-    let tested = test.as_flattened().iter().map(|&c| f64::from(c));
-    let relative = |(reference, test): (f64, f64)| {
-        let (error, scale) = ((test - reference).powi(2), reference * reference + floor);
-        if scale > 0.0 { error / scale } else { error }
-    };
-    values().zip(tested).map(relative).sum::<f64>() / count
-}
+//! The jackknife: how certain a number is that was made from several parts, such as the metric of averaged images.
 
 /// A number made from all of some parts, and how far it may be from the number that infinitely many would make.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,15 +35,6 @@ impl Jackknifed {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn errors_are_relative() {
-        let (reference, test) = ([[1.0; 3]; 4], [[1.1; 3]; 4]);
-        let expected = 0.1_f64.powi(2) / 1.01;
-        assert!((relative_mse(&reference, &test) - expected).abs() < 1e-7);
-        assert_eq!(relative_mse(&reference, &reference), 0.0);
-        assert_eq!(relative_mse(&[[0.0; 3]], &[[0.0; 3]]), 0.0);
-    }
 
     #[test]
     fn the_jackknife_of_a_mean_is_its_standard_error() {

@@ -1,0 +1,1 @@
+// Stands in for emitted code: a library of nothing.
