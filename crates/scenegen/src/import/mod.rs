@@ -8,32 +8,20 @@
 
 use std::path::Path;
 
+use self::error::Fault;
 use crate::desc::SceneDesc;
 
 mod budget;
 mod environment;
 mod error;
 mod files;
-mod gltf_accessors;
-mod gltf_document;
-mod gltf_extensions;
-mod gltf_lights;
-mod gltf_materials;
-mod gltf_meshes;
-mod gltf_nodes;
-mod gltf_scene;
-mod gltf_textures;
+mod gltf;
 mod guard;
 mod images;
 mod instances;
-mod mtl;
-mod normals;
+mod mesh;
 mod obj;
-mod obj_materials;
-mod obj_source;
-mod tangents;
 pub(crate) mod texture_uses;
-mod triangles;
 
 pub use environment::EnvironmentOptions;
 pub use error::ImportError;
@@ -57,7 +45,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
         .to_string_lossy()
         .to_ascii_lowercase();
     let mut scene = match extension.as_str() {
-        "gltf" | "glb" => gltf_scene::import(path, &mut warnings)?,
+        "gltf" | "glb" => gltf::import(path, &mut warnings)?,
         "obj" => obj::import(path, &mut warnings)?,
         _ => {
             return Err(ImportError::UnknownFormat {
@@ -80,11 +68,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
     scene.warnings = warnings.into_vec();
     if let Err(violation) = scene.validate() {
         // Values the checks above did not foresee; better refused here than rendered as NaN.
-        return Err(gltf_document::malformed(
-            path,
-            &violation.place,
-            &violation.problem,
-        ));
+        return Err(Fault::new(violation.place, violation.problem).in_file(path));
     }
     if options.strict && !scene.warnings.is_empty() {
         return Err(ImportError::Strict {

@@ -3,8 +3,8 @@
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use gltf::json::{Index, Node, Scene};
 
-use super::error::{Fault, Warnings, place};
-use super::gltf_document::{Document, get};
+use super::document::{Document, get};
+use crate::import::error::{Fault, Warnings, place};
 
 /// A node of the scene with its world transform.
 pub(super) struct Placed<'a> {
@@ -53,7 +53,7 @@ pub(super) fn flatten<'a>(
             stack.push((child.value(), world));
         }
         if let Some(extensions) = &node.extensions {
-            super::gltf_extensions::warn_about_others(
+            super::extensions::warn_about_others(
                 &extensions.others,
                 &["EXT_mesh_gpu_instancing"],
                 &place,

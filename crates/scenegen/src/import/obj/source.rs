@@ -7,7 +7,7 @@
 use std::io::{self, BufRead, Read};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::error::{Fault, Warnings};
+use crate::import::error::{Fault, Warnings};
 
 /// Cleaned text, with what the materials pass wants to know.
 pub(super) struct ObjSource {

@@ -4,14 +4,14 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::error::Warnings;
-use super::files;
-use super::images::{self, ImageRequest};
 use super::mtl::{MapStatement, MtlMaterial, parse_map};
 use crate::desc::{
     AlphaMode, ColorInput, Filter, ImageDesc, MaterialDesc, NormalMap, Phong, ScalarInput,
     SurfaceDesc, TextureDesc, TextureUse, Wrap,
 };
+use crate::import::error::Warnings;
+use crate::import::files;
+use crate::import::images::{self, ImageRequest};
 
 /// Reflectance where a file gives none.
 const GREY: f32 = 0.8;

@@ -6,7 +6,7 @@ use std::path::Path;
 use gltf::json::{Root, Value};
 use serde_json::Map;
 
-use super::error::{ImportError, Warnings};
+use crate::import::error::{ImportError, Warnings};
 
 /// Extensions whose effect is imported.
 const SUPPORTED: &[&str] = &[

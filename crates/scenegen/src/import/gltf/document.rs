@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use gltf::json::{self, Animation, Index, Root, Value};
 
-use super::error::{EXPORT_AGAIN, Fault, ImportError, MAKE_SMALLER, Warnings, place};
-use super::files;
-use super::gltf_extensions;
+use super::extensions;
+use crate::import::error::{Fault, ImportError, MAKE_SMALLER, Warnings, place};
+use crate::import::files;
 
 /// More JSON objects than this would need gigabytes once parsed.
 const MAX_JSON_OBJECTS: usize = 2_000_000;
@@ -38,7 +38,7 @@ impl Document {
         };
         let root = parse(json).map_err(|fault| fault.in_file(file))?;
         check_version(&root).map_err(|fault| fault.in_file(file))?;
-        gltf_extensions::check_required(&root, file)?;
+        extensions::check_required(&root, file)?;
 
         let mut document = Self {
             file: file.to_owned(),
@@ -49,7 +49,7 @@ impl Document {
         document.buffers = buffers
             .map(|(index, buffer)| load_buffer(index, buffer, file, binary))
             .collect();
-        gltf_extensions::warn_about_root(&document.root, warnings);
+        extensions::warn_about_root(&document.root, warnings);
         Ok(document)
     }
 
@@ -242,14 +242,4 @@ fn load_buffer(
     // Padding of the GLB chunk is not part of the buffer.
     bytes.truncate(length);
     Ok(bytes)
-}
-
-/// An error about a whole file with the standard advice.
-pub(super) fn malformed(file: &Path, place: &str, problem: &str) -> ImportError {
-    Fault {
-        place: place.into(),
-        problem: problem.into(),
-        advice: EXPORT_AGAIN,
-    }
-    .in_file(file)
 }

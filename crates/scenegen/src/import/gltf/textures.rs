@@ -9,11 +9,11 @@ use gltf::json::texture::{Info, MagFilter, Sampler, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Texture, Value};
 
-use super::error::{Fault, Warnings, place};
-use super::files;
-use super::gltf_document::{Document, get};
-use super::images::{self, ImageRequest};
+use super::document::{Document, get};
 use crate::desc::{Filter, ImageDesc, TextureDesc, TextureUse, UvTransform, Wrap};
+use crate::import::error::{Fault, Warnings, place};
+use crate::import::files;
+use crate::import::images::{self, ImageRequest};
 
 /// Textures in use, with their images still encoded.
 pub(super) struct Textures<'a> {

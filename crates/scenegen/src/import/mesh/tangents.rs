@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3, Vec4};
 
-use super::error::Warnings;
 use super::normals::{gather, normalized};
 use crate::desc::MeshDesc;
+use crate::import::error::Warnings;
 
 /// Sets `mesh.tangents`, or warns that the normal map cannot be shown.
 pub(super) fn complete(

@@ -4,9 +4,9 @@ use gltf::json::accessor::{ComponentType, Type, sparse::Sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index};
 
-use super::budget::Budget;
-use super::error::{Fault, place};
-use super::gltf_document::{Document, get};
+use super::document::{Document, get};
+use crate::import::budget::Budget;
+use crate::import::error::{Fault, place};
 
 /// A file's accessors and the memory they may take.
 pub(super) struct Accessors<'a> {

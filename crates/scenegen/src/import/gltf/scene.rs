@@ -5,18 +5,21 @@ use std::path::Path;
 use glam::{DAffine3, DQuat, DVec3};
 use gltf::json::{Index, Mesh};
 
-use super::error::{Fault, ImportError, Warnings, place};
-use super::gltf_accessors::Accessors;
-use super::gltf_document::{Document, get};
-use super::gltf_materials::Materials;
-use super::gltf_nodes::{self, Placed};
-use super::instances::place_mesh;
-use super::triangles;
-use super::{gltf_lights, gltf_meshes, texture_uses};
+use super::accessors::Accessors;
+use super::document::{Document, get};
+use super::materials::Materials;
+use super::nodes::{self, Placed};
+use super::{lights, primitives};
 use crate::desc::{InstanceDesc, MeshDesc, SceneDesc};
+use crate::import::error::{Fault, ImportError, Warnings, place};
+use crate::import::instances::place_mesh;
+use crate::import::{mesh, texture_uses};
 
 /// Reads a `.gltf` or `.glb` file.
-pub(super) fn import(file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, ImportError> {
+pub(in crate::import) fn import(
+    file: &Path,
+    warnings: &mut Warnings,
+) -> Result<SceneDesc, ImportError> {
     let document = Document::open(file, warnings)?;
     read(&document, warnings).map_err(|fault| fault.in_file(file))
 }
@@ -30,7 +33,7 @@ fn read(document: &Document, warnings: &mut Warnings) -> Result<SceneDesc, Fault
         mesh_ids: vec![None; document.root.meshes.len()],
     };
     let mut scene = SceneDesc::default();
-    for placed in gltf_nodes::flatten(document, warnings)? {
+    for placed in nodes::flatten(document, warnings)? {
         if let Some(mesh) = placed.node.mesh {
             reader.instances(mesh, &placed, &mut scene.instances, warnings)?;
         }
@@ -38,17 +41,14 @@ fn read(document: &Document, warnings: &mut Warnings) -> Result<SceneDesc, Fault
         if let Some(light) =
             extensions.and_then(|extensions| extensions.khr_lights_punctual.as_ref())
         {
-            scene.lights.extend(gltf_lights::light(
-                document,
-                light.light,
-                &placed,
-                warnings,
-            )?);
+            scene
+                .lights
+                .extend(lights::light(document, light.light, &placed, warnings)?);
         }
         if let Some(camera) = placed.node.camera {
             scene
                 .cameras
-                .extend(gltf_lights::camera(document, camera, &placed, warnings)?);
+                .extend(lights::camera(document, camera, &placed, warnings)?);
         }
     }
     reader.dismiss_unused(warnings);
@@ -205,8 +205,7 @@ impl Reader<'_> {
         let mut ids = Vec::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let at = format!("{mesh_place}/primitives/{i}");
-            let Some(raw) = gltf_meshes::read(primitive, &mut self.accessors, &at, warnings)?
-            else {
+            let Some(raw) = primitives::read(primitive, &mut self.accessors, &at, warnings)? else {
                 continue;
             };
             let name = if mesh.primitives.len() > 1 {
@@ -218,7 +217,7 @@ impl Reader<'_> {
             let desc = &self.materials.list[material];
             texture_uses::warn_about_missing_uvs(desc, &raw.uvs, &at, warnings);
             let tangent_uv_set = desc.normal_map.as_ref().map(|map| map.texture.uv_set);
-            let finished = triangles::finish(
+            let finished = mesh::finish(
                 raw,
                 name,
                 tangent_uv_set,

@@ -5,9 +5,9 @@ use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index};
 
-use super::error::{Fault, Warnings};
-use super::gltf_accessors::Accessors;
-use super::triangles::RawMesh;
+use super::accessors::Accessors;
+use crate::import::error::{Fault, Warnings};
+use crate::import::mesh::RawMesh;
 
 /// Reads a primitive; `None`, after a warning, where it has nothing to render.
 pub(super) fn read(
@@ -17,7 +17,7 @@ pub(super) fn read(
     warnings: &mut Warnings,
 ) -> Result<Option<RawMesh>, Fault> {
     if let Some(extensions) = &primitive.extensions {
-        super::gltf_extensions::warn_about_others(&extensions.others, &[], at, warnings);
+        super::extensions::warn_about_others(&extensions.others, &[], at, warnings);
     }
     let mode = match primitive.mode {
         Checked::Valid(mode) => mode,

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::error::Warnings;
 use crate::desc::MeshDesc;
+use crate::import::error::Warnings;
 
 /// The normal of a triangle's front, in f64 so that slivers and tiny triangles have one; `None` without area.
 pub(super) fn face_normal(positions: &[Vec3], corners: [u32; 3]) -> Option<Vec3> {

@@ -8,10 +8,10 @@ use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type as LightTyp
 use gltf::json::validation::Checked;
 use gltf::json::{Camera, Index};
 
-use super::error::{Fault, Warnings, place};
-use super::gltf_document::{Document, get};
-use super::gltf_nodes::{Placed, rotation_of};
+use super::document::{Document, get};
+use super::nodes::{Placed, rotation_of};
 use crate::desc::{CameraDesc, LightDesc, LightKind, Projection};
+use crate::import::error::{Fault, Warnings, place};
 
 /// The vertical field of view where a file gives an impossible one, in radians.
 const DEFAULT_YFOV: f32 = FRAC_PI_4;

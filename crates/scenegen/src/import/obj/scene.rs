@@ -7,17 +7,17 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DAffine3, Vec2, Vec3};
 
-use super::budget::Budget;
-use super::error::{Fault, ImportError, MAKE_SMALLER, Warnings};
-use super::files;
-use super::guard::without_panic;
-use super::instances::place_mesh;
+use super::materials::ObjMaterials;
 use super::mtl::{self, MtlMaterial};
-use super::obj_materials::ObjMaterials;
-use super::obj_source::{self, CountingLines, ObjSource, REPAIR_LINE};
-use super::texture_uses;
-use super::triangles::{self, RawMesh};
+use super::source::{self, CountingLines, ObjSource, REPAIR_LINE};
 use crate::desc::{MeshDesc, SceneDesc};
+use crate::import::budget::Budget;
+use crate::import::error::{Fault, ImportError, MAKE_SMALLER, Warnings};
+use crate::import::files;
+use crate::import::guard::without_panic;
+use crate::import::instances::place_mesh;
+use crate::import::mesh::{self, RawMesh};
+use crate::import::texture_uses;
 
 /// tobj needs several times a file's size.
 const MAX_OBJ_BYTES: usize = 256 << 20;
@@ -26,7 +26,10 @@ const MAX_OBJ_BYTES: usize = 256 << 20;
 const MAX_LIBRARIES: usize = 1000;
 
 /// Reads an `.obj` file and its material libraries.
-pub(super) fn import(file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, ImportError> {
+pub(in crate::import) fn import(
+    file: &Path,
+    warnings: &mut Warnings,
+) -> Result<SceneDesc, ImportError> {
     let bytes = files::read(file).map_err(|message| ImportError::Io {
         file: file.to_owned(),
         message,
@@ -38,7 +41,7 @@ pub(super) fn import(file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, 
         );
         return Err(fault.advise(MAKE_SMALLER).in_file(file));
     }
-    let source = obj_source::clean(&bytes, warnings).map_err(|fault| fault.in_file(file))?;
+    let source = source::clean(&bytes, warnings).map_err(|fault| fault.in_file(file))?;
     drop(bytes);
     let folder = file.parent().unwrap_or(Path::new(""));
     let (models, materials) =
@@ -119,8 +122,7 @@ fn build(
         texture_uses::warn_about_missing_uvs(desc, &raw.uvs, &place, warnings);
         let tangent_uv_set = desc.normal_map.as_ref().map(|map| map.texture.uv_set);
         let name = model.name.clone();
-        let Some(mesh) =
-            triangles::finish(raw, name, tangent_uv_set, &place, &mut budget, warnings)?
+        let Some(mesh) = mesh::finish(raw, name, tangent_uv_set, &place, &mut budget, warnings)?
         else {
             continue;
         };

@@ -4,32 +4,32 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::budget::Budget;
-use super::error::{Fault, Warnings};
 use super::{normals, tangents};
 use crate::desc::MeshDesc;
+use crate::import::budget::Budget;
+use crate::import::error::{Fault, Warnings};
 
 /// Vertices and triangles, with attribute arrays of the same length and indices in range, but with any
 /// bits in the floats.
 #[derive(Debug, Default)]
-pub(super) struct RawMesh {
+pub(in crate::import) struct RawMesh {
     /// Positions.
-    pub(super) positions: Vec<Vec3>,
+    pub(in crate::import) positions: Vec<Vec3>,
     /// Normals of any length.
-    pub(super) normals: Option<Vec<Vec3>>,
+    pub(in crate::import) normals: Option<Vec<Vec3>>,
     /// Tangents of any length.
-    pub(super) tangents: Option<Vec<Vec4>>,
+    pub(in crate::import) tangents: Option<Vec<Vec4>>,
     /// Texture coordinates.
-    pub(super) uvs: [Option<Vec<Vec2>>; 2],
+    pub(in crate::import) uvs: [Option<Vec<Vec2>>; 2],
     /// Colours.
-    pub(super) colors: Option<Vec<Vec4>>,
+    pub(in crate::import) colors: Option<Vec<Vec4>>,
     /// Corners.
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub(in crate::import) triangles: Vec<[u32; 3]>,
 }
 
 /// Makes a valid mesh; `None` where no triangle is left. `tangent_uv_set` says that the material has a
 /// normal map, and with which texture coordinates.
-pub(super) fn finish(
+pub(in crate::import) fn finish(
     mut raw: RawMesh,
     name: String,
     tangent_uv_set: Option<usize>,

@@ -6,9 +6,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::error::Warnings;
-use super::files;
-use super::obj_source::split_keyword;
+use super::source::split_keyword;
+use crate::import::error::Warnings;
+use crate::import::files;
 
 /// A material as its lines say.
 #[derive(Debug, Default)]

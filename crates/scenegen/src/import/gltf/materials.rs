@@ -8,15 +8,15 @@ use gltf::json::texture::Info;
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Material};
 
-use super::error::{Fault, Warnings, place};
-use super::gltf_document::{Document, get};
-use super::gltf_extensions;
-use super::gltf_textures::{Reference, Textures};
+use super::document::{Document, get};
+use super::extensions;
+use super::textures::{Reference, Textures};
 use crate::desc::{
     AlphaMode, ColorInput, MaterialDesc, MetallicRoughness, NormalMap, ScalarInput, SurfaceDesc,
     TextureUse,
 };
 use crate::effect::Effect;
+use crate::import::error::{Fault, Warnings, place};
 
 /// Materials in use, in order of first use.
 pub(super) struct Materials<'a> {
@@ -98,7 +98,7 @@ struct Reader<'r, 'a> {
 impl Reader<'_, '_> {
     fn material(mut self, material: &Material, name: String) -> Result<MaterialDesc, Fault> {
         let extensions = material.extensions.clone().unwrap_or_default();
-        gltf_extensions::warn_about_material(&extensions.others, &self.at, self.warnings);
+        extensions::warn_about_material(&extensions.others, &self.at, self.warnings);
 
         let pbr = &material.pbr_metallic_roughness;
         let base_texture = self.texture("baseColorTexture", pbr.base_color_texture.as_ref())?;
