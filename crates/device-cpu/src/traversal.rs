@@ -6,7 +6,7 @@
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
     AllHits, BuildQuality, Bvh, Culling, Hit, HitFilter, Hybrid, Kernel, MarkedHits, Ray,
-    Watertight, build,
+    Watertight, build, traversal_cost,
 };
 use residual_render::scene_data::SceneData;
 
@@ -115,35 +115,59 @@ impl HitFilter for Covered<'_> {
     }
 }
 
-/// Calls a query of packets as wide as the hierarchy with the filter that the scene calls for. Packets fall back to
-/// single rays where neighbours disagree, so they serve all streams.
-macro_rules! trace {
-    (@ $self:ident, $simd:ident, $bvh:ident, $width:literal, $alpha:ident, $query:ident($rays:ident, $answers:ident)) => {{
-        let (kernel, bvh) = (Hybrid::<$width>, $bvh.view());
-        match $alpha {
-            Some(alpha) => {
-                let covered = Covered { alpha, lets_through: &$self.lets_through };
-                kernel.$query($simd, Watertight, bvh, $rays, $answers, &covered)
-            }
-            None if $self.sided => kernel.$query($simd, Watertight, bvh, $rays, $answers, &MarkedHits),
-            None => kernel.$query($simd, Watertight, bvh, $rays, $answers, &AllHits),
-        }
-    }};
-    ($self:ident, $alpha:ident, $query:ident($rays:ident, $answers:ident)) => {
-        dispatch!(Level::new(), simd => match &$self.tree {
-            Tree::Four(bvh) => trace!(@ $self, simd, bvh, 4, $alpha, $query($rays, $answers)),
-            Tree::Eight(bvh) => trace!(@ $self, simd, bvh, 8, $alpha, $query($rays, $answers)),
-            Tree::Sixteen(bvh) => trace!(@ $self, simd, bvh, 16, $alpha, $query($rays, $answers)),
+/// Evaluates an expression for the hierarchy, whatever its width, and the kernel of its streams, on the machine's
+/// instruction set.
+macro_rules! with_tree {
+    ($tree:expr, $simd:ident, $kernel:ident, $bvh:ident => $call:expr) => {
+        dispatch!(Level::new(), $simd => match $tree {
+            Tree::Four(bvh) => { let ($kernel, $bvh) = (Hybrid::<4>, bvh.view()); $call }
+            Tree::Eight(bvh) => { let ($kernel, $bvh) = (Hybrid::<8>, bvh.view()); $call }
+            Tree::Sixteen(bvh) => { let ($kernel, $bvh) = (Hybrid::<16>, bvh.view()); $call }
         })
     };
 }
 
+/// Evaluates an expression with the filter that the scene calls for.
+macro_rules! with_filter {
+    ($self:ident, $alpha:ident, $filter:ident => $call:expr) => {
+        match $alpha {
+            Some(alpha) => {
+                let $filter = &Covered {
+                    alpha,
+                    lets_through: &$self.lets_through,
+                };
+                $call
+            }
+            None if $self.sided => {
+                let $filter = &MarkedHits;
+                $call
+            }
+            None => {
+                let $filter = &AllHits;
+                $call
+            }
+        }
+    };
+}
+
+/// Streams are traced in packets as wide as the hierarchy, which fall back to single rays where neighbours disagree.
 impl Traversal for AnyBvh {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&Alpha<'_>>) {
-        trace!(self, alpha, closest_hits(rays, hits));
+        with_tree!(&self.tree, simd, kernel, bvh => with_filter!(self, alpha, filter =>
+            kernel.closest_hits(simd, Watertight, bvh, rays, hits, filter)));
     }
 
     fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>) {
-        trace!(self, alpha, any_hits(rays, occluded));
+        with_tree!(&self.tree, simd, kernel, bvh => with_filter!(self, alpha, filter =>
+            kernel.any_hits(simd, Watertight, bvh, rays, occluded, filter)));
+    }
+
+    fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&Alpha<'_>>) {
+        with_tree!(&self.tree, simd, _kernel, bvh => with_filter!(self, alpha, filter => {
+            for (ray, visits) in rays.iter().zip(visits) {
+                let cost = traversal_cost(simd, Watertight, bvh, ray, filter);
+                *visits = cost.nodes + cost.packets;
+            }
+        }));
     }
 }
