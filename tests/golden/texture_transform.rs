@@ -31,7 +31,7 @@ impl Scene<'_> {
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
     pub const STRUCTURE: u64 = 0x63aa98cb79ec8dce;
 
-    /// The layers that are filled beside radiance: none.
+    /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
 }
 
@@ -62,10 +62,6 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
             sampler: Sobol,
             settings,
         }
-    }
-    #[inline(always)]
-    fn layers(&self) -> Layers {
-        Self::LAYERS
     }
     // point lights: 1
     #[inline(always)]

@@ -44,6 +44,8 @@ pub struct Look {
     pub seed: u32,
     /// Threads.
     pub threads: usize,
+    /// How far the tracer reaches.
+    pub reach: f32,
     /// Pixels along the side of a tile; `None` is the device's choice.
     pub tile_size: Option<u32>,
 }
@@ -57,6 +59,7 @@ impl Look {
             max_depth: 8,
             seed: 0,
             threads: 2,
+            reach: f32::MAX,
             tile_size: None,
         }
     }
@@ -128,7 +131,7 @@ impl<'a> Prepared<'a> {
             time: None,
             max_depth: look.max_depth,
             seed: look.seed,
-            ..RenderOptions::default()
+            reach: look.reach,
         };
         let go_on = |_: residual_device_cpu::Progress<'_>| ControlFlow::Continue(());
         device.render(|| renderer, &self.view(), &options, go_on).0

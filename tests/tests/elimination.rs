@@ -6,6 +6,8 @@
 
 use std::path::Path;
 
+use residual_render::layer::{Layer, Layers};
+use residual_render::tracer::{DebugView, TracerNode};
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::emit::rust;
@@ -95,6 +97,8 @@ const COMMON: &[&str] = &[
     "render/src/bsdf/mod.rs",
     "render/src/camera.rs",
     "render/src/domain/",
+    // How many numbers a sample has.
+    "render/src/layer.rs",
     "render/src/light/mod.rs",
     "render/src/material.rs",
     "render/src/math/",
@@ -102,7 +106,10 @@ const COMMON: &[&str] = &[
     "render/src/surface.rs",
     // Constants and parameters.
     "render/src/texture/mod.rs",
-    "render/src/tracer/",
+    "render/src/tracer/mod.rs",
+    "render/src/tracer/path.rs",
+    "render/src/tracer/settings.rs",
+    "render/src/tracer/step.rs",
 ];
 
 fn planned(scene: &SceneDesc) -> Plan {
@@ -223,4 +230,51 @@ fn shared_cornell_box() {
     let Some(scenes) = scenes() else { return };
     let scene = read_scene(&scenes.join("interiors/cornell-generated.glb"), None);
     check_cornell(&scene.unwrap(), "cornell_generated");
+}
+
+/// Layers, and tracers but that of paths, are asked for on the command line. Who does not ask has none of their code.
+#[test]
+fn layers_and_other_tracers_are_there_if_asked_for() {
+    let tiny = tiny::all().into_iter().find(|tiny| tiny.name == "matte");
+    let scene = tiny.unwrap().scene;
+    let compile = |tracer, layers| {
+        let options = PlanOptions {
+            tracer,
+            layers,
+            ..PlanOptions::default()
+        };
+        Library::compile(&plan(&scene, &options).unwrap())
+    };
+    let all: Layers = Layer::ALL.into_iter().collect();
+    let libraries = [
+        compile(TracerNode::Path, Layers::NONE),
+        compile(TracerNode::Path, all),
+        compile(TracerNode::AmbientOcclusion, Layers::NONE),
+        compile(TracerNode::Debug(DebugView::Normals), Layers::NONE),
+    ];
+    let is_in = |file: &str| {
+        let bytes = libraries.each_ref().map(|library| library.bytes_of(file));
+        bytes.map(|bytes| bytes > 0)
+    };
+    assert_eq!(
+        is_in("render/src/tracer/path.rs"),
+        [true, true, false, false]
+    );
+    assert_eq!(
+        is_in("render/src/tracer/features.rs"),
+        [false, true, false, false]
+    );
+    assert_eq!(
+        is_in("render/src/tracer/ambient_occlusion.rs"),
+        [false, false, true, false]
+    );
+    assert_eq!(
+        is_in("render/src/tracer/debug.rs"),
+        [false, false, false, true]
+    );
+    // What is not computed needs no light either.
+    assert_eq!(
+        is_in("render/src/light/punctual.rs"),
+        [true, true, false, false]
+    );
 }

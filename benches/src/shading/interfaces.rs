@@ -225,9 +225,6 @@ impl<D: Domain> Scene<D> for Cases<'_> {
             settings,
         }
     }
-    fn layers(&self) -> Layers {
-        Layers::NONE
-    }
     fn lights(&self) -> &(Point, ()) {
         &(Point, ())
     }

@@ -3,25 +3,26 @@
 use residual_render::domain::{Lanes, MAX_LANES};
 use residual_render::layer::Layers;
 use residual_render::math::Color;
-use residual_render::tracer::Features;
 
 /// `values[sample][row][column][channel]`: radiance, then the channels of the layers.
 pub(crate) struct Samples<'a> {
     values: &'a mut [f32],
-    layers: Layers,
+    /// Numbers of a sample.
+    stride: usize,
 }
 
 impl<'a> Samples<'a> {
     /// All zero.
     pub(crate) fn new(values: &'a mut [f32], layers: Layers) -> Self {
         values.fill(0.0);
-        Self { values, layers }
+        let stride = layers.stride();
+        Self { values, stride }
     }
 
     /// Adds a row of red, green and blue to the sample of the index behind them.
     #[inline(always)]
     pub(crate) fn add_row(&mut self, [r, g, b, sample]: [u32; 4]) {
-        let first = sample as usize * self.layers.stride();
+        let first = sample as usize * self.stride;
         let radiance = &mut self.values[first..first + Layers::RADIANCE];
         radiance[0] += f32::from_bits(r);
         radiance[1] += f32::from_bits(g);
@@ -41,15 +42,15 @@ impl<'a> Samples<'a> {
     }
 
     /// Sets the channels of layers in the lanes whose bit is set.
-    pub(crate) fn set<D: Lanes>(&mut self, d: D, bits: u32, sample: D::U, features: &Features<D>) {
-        let stride = self.layers.stride();
+    #[inline(always)]
+    pub(crate) fn set<D: Lanes>(&mut self, d: D, bits: u32, sample: D::U, channels: &[D::F]) {
         let mut indices = [0; MAX_LANES];
         d.store_word(sample, &mut indices[..D::LANES]);
-        for (channel, &value) in features.channels(self.layers).iter().enumerate() {
+        for (channel, &value) in channels.iter().enumerate() {
             let mut values = [0; MAX_LANES];
             d.store_word(d.to_bits(value), &mut values[..D::LANES]);
             for lane in (0..D::LANES).filter(|lane| bits >> lane & 1 == 1) {
-                let first = indices[lane] as usize * stride;
+                let first = indices[lane] as usize * self.stride;
                 self.values[first + Layers::RADIANCE + channel] = f32::from_bits(values[lane]);
             }
         }

@@ -17,7 +17,6 @@ pub(crate) struct Shading<'a, 's, D, T, L: ?Sized> {
     pub(crate) d: D,
     pub(crate) tracer: &'a T,
     pub(crate) lights: &'a L,
-    pub(crate) layers: Layers,
     pub(crate) paths: &'a PathStream,
     pub(crate) hits: &'a SortedHits,
     pub(crate) next: &'a mut PathStream,
@@ -46,21 +45,14 @@ where
             let members = self.hits.members(rest);
             let (path, sample) = self.paths.load(d, &members);
             let hit = self.hits.load(d, &members);
-            let step = tracer::shade(
-                d,
-                self.tracer,
-                &path,
-                &hit,
-                material,
-                self.lights,
-                self.layers,
-            );
+            let step = tracer::shade(d, self.tracer, &path, &hit, material, self.lights);
             if let Some(seen) = step.seen {
                 self.samples.add(d, valid, sample, seen);
             }
             if let Some(features) = &step.features {
                 let first = d.bits(features.first) & valid;
-                self.samples.set(d, first, sample, features);
+                self.samples
+                    .set(d, first, sample, features.channels(self.tracer.layers()));
             }
             if let Some(shadow) = &step.shadow {
                 let active = d.bits(shadow.active) & valid;
@@ -83,10 +75,12 @@ where
             if let Some(seen) = self.tracer.on_miss(d, &path, self.lights) {
                 self.samples.add(d, valid, sample, seen);
             }
-            if self.layers.stride() > Layers::RADIANCE {
-                let features = Features::of_miss(d, self.layers, &path);
+            let layers = self.tracer.layers();
+            if layers != Layers::NONE {
+                let features = Features::of_miss(d, layers, &path);
                 let first = d.bits(features.first) & valid;
-                self.samples.set(d, first, sample, &features);
+                self.samples
+                    .set(d, first, sample, features.channels(layers));
             }
         }
     }

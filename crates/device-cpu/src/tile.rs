@@ -42,7 +42,7 @@ where
     D: Lanes,
     Sc: Scene<D>,
 {
-    let (lights, layers) = (scene.lights(), scene.layers());
+    let lights = scene.lights();
     let tracer = scene.tracer(Settings::new(d, &job.tracer));
     let covers = |ray: &Ray, hit: &Hit| scene.covers(ray, hit);
     let alpha: Option<&Alpha<'_>> = if scene.has_alpha() {
@@ -58,7 +58,7 @@ where
     let mut hits = SortedHits::with_capacity(STREAM, scene.programs());
     let mut counters = Counters::default();
     let mut clock = Stopwatch(Instant::now());
-    let mut samples = Samples::new(samples, layers);
+    let mut samples = Samples::new(samples, tracer.layers());
 
     loop {
         let carried = paths.len();
@@ -97,7 +97,6 @@ where
             d,
             tracer: &tracer,
             lights,
-            layers,
             paths: &paths,
             hits: &hits,
             next: &mut next,

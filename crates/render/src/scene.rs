@@ -4,7 +4,6 @@ use residual_bvh::{Hit, Ray};
 
 use crate::camera::Camera;
 use crate::domain::Domain;
-use crate::layer::Layers;
 use crate::light::LightKinds;
 use crate::material::Material;
 use crate::tracer::{Settings, Tracer};
@@ -30,8 +29,6 @@ pub trait Scene<D: Domain>: Sync {
     fn camera(&self) -> &Self::Camera;
     /// The tracer with these settings.
     fn tracer(&self, settings: Settings<D>) -> Self::Tracer;
-    /// The layers that it fills beside radiance.
-    fn layers(&self) -> Layers;
     /// The lights.
     fn lights(&self) -> &Self::Lights;
     /// How many material programs there are.

@@ -656,7 +656,7 @@ impl Formula for AnyStep {
             depth,
         };
         let tracer = scene.tracer(Settings::new(d, &OPTIONS));
-        let step = tracer::shade(d, &tracer, &path, &hit, &material, scene.lights(), layers);
+        let step = tracer::shade(d, &tracer, &path, &hit, &material, scene.lights());
         let mut out = Yield::new();
         if let Some(seen) = step.seen {
             out.vector(seen);

@@ -11,7 +11,7 @@ use crate::layer::Layers;
 use crate::light::{Area, Directional, Environment, LightKind, Point, Spot};
 use crate::sampler::AnySampler;
 use crate::scene::{MaterialVisitor, Scene};
-use crate::tracer::{AnyTracer, Settings, TracerNode};
+use crate::tracer::{AnyTracer, Layered, Settings, TracerNode};
 
 /// A scene as boxed nodes over a domain.
 pub struct Interpreted<'a, D: Domain> {
@@ -62,17 +62,17 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
 
 impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
     type Camera = AnyCamera;
-    type Tracer = AnyTracer<D, AnySampler>;
+    type Tracer = Layered<AnyTracer<D, AnySampler>, Layers>;
     type Lights = [Box<dyn LightKind<D> + Send + Sync + 'a>];
 
     fn camera(&self) -> &AnyCamera {
         &self.camera
     }
     fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
-        self.tracer.tracer(self.sampler, settings)
-    }
-    fn layers(&self) -> Layers {
-        self.layers
+        Layered {
+            tracer: self.tracer.tracer(self.sampler, settings),
+            layers: self.layers,
+        }
     }
     fn lights(&self) -> &Self::Lights {
         &self.lights

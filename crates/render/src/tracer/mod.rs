@@ -12,6 +12,7 @@ mod any;
 mod cost_map;
 mod debug;
 mod features;
+mod layered;
 mod path;
 mod settings;
 mod step;
@@ -21,6 +22,7 @@ pub use any::{AnyTracer, TracerNode};
 pub use cost_map::CostMap;
 pub use debug::{Debug, DebugView};
 pub use features::Features;
+pub use layered::{ConstLayers, LayerSet, Layered};
 pub use path::PathTracer;
 pub use settings::{Settings, TracerOptions};
 pub use step::{Step, shade};
@@ -28,6 +30,7 @@ pub use step::{Step, shade};
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
 use crate::domain::Domain;
+use crate::layer::Layers;
 use crate::light::LightKinds;
 use crate::math::{Color, Vec3};
 use crate::sampler::SampleKey;
@@ -138,7 +141,14 @@ pub trait Tracer<D: Domain> {
         None
     }
 
+    /// The layers that are filled beside radiance.
+    #[inline(always)]
+    fn layers(&self) -> Layers {
+        Layers::NONE
+    }
+
     /// How the cost of tracing a camera ray is shown, if that is what the image is of.
+    #[inline(always)]
     fn cost_map(&self) -> Option<CostMap> {
         None
     }

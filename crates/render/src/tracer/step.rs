@@ -30,7 +30,6 @@ pub fn shade<D, T, M, L>(
     hit: &Hit<D>,
     material: &M,
     lights: &L,
-    layers: Layers,
 ) -> Step<D>
 where
     D: Domain,
@@ -48,10 +47,10 @@ where
         bsdf: &shading.bsdf,
         wo,
     };
+    let layers = tracer.layers();
     let mut step = Step {
         seen: tracer.on_hit(d, path, &vertex, lights),
-        features: (layers.stride() > Layers::RADIANCE)
-            .then(|| Features::new(d, layers, path, &vertex)),
+        features: (layers != Layers::NONE).then(|| Features::new(d, layers, path, &vertex)),
         shadow: None,
         bounce: None,
     };

@@ -115,7 +115,7 @@ fn scene(out: &mut String, plan: &Plan, textures: &Textures<'_>) -> fmt::Result 
         "    fn camera(&self) -> &Self::Camera {{\n        &{:?}\n    }}",
         structure.camera
     )?;
-    tracer::methods(out, structure)?;
+    tracer::method(out, structure)?;
     for (light, of_kind) in structure.lights.iter().zip(&plan.lights) {
         writeln!(out, "    // {}: {}", light_name(light), of_kind.count)?;
     }

@@ -15,10 +15,7 @@ pub(super) fn layers(out: &mut String, layers: Layers) -> fmt::Result {
         true => "none".to_owned(),
         false => names.join(", "),
     };
-    writeln!(
-        out,
-        "\n    /// The layers that are filled beside radiance: {names}."
-    )?;
+    writeln!(out, "\n    /// Layers beside radiance: {names}.")?;
     writeln!(
         out,
         "    pub const LAYERS: Layers = Layers::from_bits({:#b});",
@@ -28,12 +25,21 @@ pub(super) fn layers(out: &mut String, layers: Layers) -> fmt::Result {
 
 /// The associated type of the tracer.
 pub(super) fn associated_type(out: &mut String, structure: &Structure) -> fmt::Result {
-    let name = name(structure.tracer);
-    writeln!(out, "    type Tracer = {name}<D, {:?}>;", structure.sampler)
+    let sampler = Code::word(format!("{:?}", structure.sampler));
+    let tracer = Code::generic(name(structure.tracer), [Code::word("D"), sampler]);
+    let tracer = match structure.layers {
+        Layers::NONE => tracer,
+        layers => {
+            let layers = Code::word(format!("ConstLayers<{:#b}>", layers.bits()));
+            Code::generic("Layered", [tracer, layers])
+        }
+    };
+    let start = "    type Tracer = ";
+    writeln!(out, "{start}{};", tracer.lines(4, start.len(), 1))
 }
 
-/// The methods that give the tracer and its layers.
-pub(super) fn methods(out: &mut String, structure: &Structure) -> fmt::Result {
+/// The method that gives the tracer.
+pub(super) fn method(out: &mut String, structure: &Structure) -> fmt::Result {
     let mut fields = vec![
         ("sampler", Code::word(format!("{:?}", structure.sampler))),
         ("settings", Code::word("settings")),
@@ -41,14 +47,18 @@ pub(super) fn methods(out: &mut String, structure: &Structure) -> fmt::Result {
     if let TracerNode::Debug(view) = structure.tracer {
         fields.push(("view", Code::word(format!("DebugView::{view:?}"))));
     }
-    let tracer = Code::literal(name(structure.tracer), fields).lines(8, 8, 0);
+    let tracer = Code::literal(name(structure.tracer), fields);
+    let tracer = match structure.layers {
+        Layers::NONE => tracer,
+        _ => Code::literal(
+            "Layered",
+            [("tracer", tracer), ("layers", Code::word("ConstLayers"))],
+        ),
+    };
     writeln!(
         out,
-        "    #[inline(always)]\n    fn tracer(&self, settings: Settings<D>) -> Self::Tracer {{\n        {tracer}\n    }}"
-    )?;
-    writeln!(
-        out,
-        "    #[inline(always)]\n    fn layers(&self) -> Layers {{\n        Self::LAYERS\n    }}"
+        "    #[inline(always)]\n    fn tracer(&self, settings: Settings<D>) -> Self::Tracer {{\n        {}\n    }}",
+        tracer.lines(8, 8, 0)
     )
 }
 
