@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use residual_device_cpu::LaneCount;
 use residual_frontend::options::Size;
-use residual_render::layer::Layer;
+use residual_render::layer::{Layer, Layers};
 use residual_render::tracer::{DebugView, TracerNode};
 
 /// Generates a renderer for a scene, and renders it.
@@ -89,6 +89,13 @@ pub(crate) struct SceneArgs {
     /// When a material's numbers are known to the compiler
     #[arg(long, value_enum, default_value_t = SpecializeArg::Structure)]
     pub(crate) specialize: SpecializeArg,
+}
+
+impl SceneArgs {
+    /// The layers of the image.
+    pub(crate) fn layers(&self) -> Layers {
+        self.aov.iter().copied().collect()
+    }
 }
 
 #[derive(Args)]

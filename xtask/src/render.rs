@@ -16,6 +16,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let session = Session::new(
         &args.render,
         args.scene.scene.file_stem().unwrap_or_default(),
+        args.scene.layers(),
     )?;
     let (plan, load) = scene::load(&args.scene)?;
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);

@@ -64,7 +64,7 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             SamplerArg::Independent => AnySampler::Independent,
         },
         tracer: args.tracer.node(args.view),
-        layers: args.aov.iter().copied().collect(),
+        layers: args.layers(),
         flat_normals: false,
     };
     Ok((scene, options))

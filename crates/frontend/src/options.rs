@@ -29,7 +29,7 @@ pub struct RenderArgs {
     pub seed: u32,
     /// How far occluders count for ambient occlusion, and where the depth view turns black, in units of the scene
     /// [default: a tenth of the scene's diagonal, and all of it]
-    #[arg(long, value_name = "DISTANCE", value_parser = distance)]
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = distance)]
     pub reach: Option<f32>,
     /// Threads; 0 is one for each processor
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -1,11 +1,12 @@
 //! Image files. A file is written beside its place, synced, and renamed: there is never half an image.
 
 use std::io::{Cursor, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use exr::prelude::*;
 use residual_render::film::Film;
+use residual_render::layer::Layers;
 use residual_render::texture::srgb_code;
 
 /// What is written beside the pixels.
@@ -30,6 +31,21 @@ pub fn check(path: &Path) -> Result<()> {
         _ => bail!("{}: images are written as .png or .exr", path.display()),
     }
     check_place(path)
+}
+
+/// Refuses layers that no file could hold.
+///
+/// # Errors
+/// If there are layers, and none of the files is an EXR.
+pub fn check_layers(paths: &[PathBuf], layers: Layers) -> Result<()> {
+    if layers != Layers::NONE && paths.iter().all(|path| extension(path) != "exr") {
+        let names: Vec<_> = layers.iter().map(|layer| layer.name()).collect();
+        bail!(
+            "only an EXR holds layers ({}); add one with -o image.exr",
+            names.join(", ")
+        );
+    }
+    Ok(())
 }
 
 /// Refuses places where no file can be written.
@@ -173,7 +189,7 @@ fn open_exr(film: &Film, metadata: &Metadata) -> Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use residual_render::layer::{Layer, Layers};
+    use residual_render::layer::Layer;
 
     fn film() -> Film {
         let mut film = Film::new(3, 2, 64, Layers::NONE);

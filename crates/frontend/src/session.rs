@@ -11,6 +11,7 @@ use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use residual_device_cpu::{CpuDevice, Progress, RenderOptions, SceneView, TileRenderer};
 use residual_render::film::Film;
+use residual_render::layer::Layers;
 
 use crate::options::{RenderArgs, StatsFormat};
 use crate::output::{self, Metadata};
@@ -34,8 +35,8 @@ impl<'a> Session<'a> {
     /// Checks the names of the images and listens for Ctrl-C. Without names, the image has the scene's.
     ///
     /// # Errors
-    /// If an image could not be written, or the system does not let us listen.
-    pub fn new(args: &'a RenderArgs, scene: &OsStr) -> Result<Self> {
+    /// If an image could not be written, no file can hold the layers, or the system does not let us listen.
+    pub fn new(args: &'a RenderArgs, scene: &OsStr, layers: Layers) -> Result<Self> {
         let outputs = if args.output.is_empty() {
             // Not `with_extension`: a name may have dots of its own.
             let mut name = scene.to_owned();
@@ -45,6 +46,7 @@ impl<'a> Session<'a> {
             args.output.clone()
         };
         outputs.iter().try_for_each(|path| output::check(path))?;
+        output::check_layers(&outputs, layers)?;
         Ok(Self {
             args,
             outputs,

@@ -69,7 +69,11 @@ fn main() -> ExitCode {
 }
 
 fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
-    let session = Session::new(&args.render, OsStr::new(scene.name))?;
+    let session = Session::new(
+        &args.render,
+        OsStr::new(scene.name),
+        scene.renderer.layers(),
+    )?;
     let mut data = SceneData::from_bytes(scene.data)?;
     let size = args.size.map_or(scene.size, |size| size.0);
     if size != scene.size {

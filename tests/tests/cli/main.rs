@@ -10,6 +10,7 @@ mod interrupt;
 mod outputs;
 mod render;
 mod tiers;
+mod tracers;
 mod usage;
 
 use std::fs;
