@@ -95,14 +95,14 @@
 //! ```
 //!
 //! # Layout
-//! Everything is aligned to cache lines of 64 bytes. One line of `Node<2>` holds both children.
+//! Everything is aligned to cache lines of 64 bytes. One line of `WideNode<2>` holds both children.
 //!
-//! | `N` | bytes of a [`Node`] | of a [`QuantizedNode`] | `P` | bytes of a [`TrianglePacket`] |
-//! |----:|--------------------:|----------------------:|----:|------------------------------:|
-//! |   2 |                  64 |                    64 |   1 |                            64 |
-//! |   4 |                 128 |                    64 |   4 |                           192 |
-//! |   8 |                 256 |                   128 |   8 |                           320 |
-//! |  16 |                 448 |                   192 |  16 |                           640 |
+//! | `N` | bytes of a [`WideNode`] | of a [`QuantizedNode`] | `P` | bytes of a [`TrianglePacket`] |
+//! |----:|------------------------:|-----------------------:|----:|------------------------------:|
+//! |   2 |                      64 |                     64 |   1 |                            64 |
+//! |   4 |                     128 |                     64 |   4 |                           192 |
+//! |   8 |                     256 |                    128 |   8 |                           320 |
+//! |  16 |                     448 |                    192 |  16 |                           640 |
 //!
 //! A [`QuantizedBvh`] is a [`Bvh`] with smaller nodes and the same answers.
 //!
@@ -175,7 +175,7 @@ pub use instances::instanced_bvh::InstancedBvh;
 pub use instances::query::{InstanceHit, any_instance_hit, closest_instance_hit};
 pub use layout::boxes::Boxes;
 pub use layout::bvh::{Bvh, BvhView};
-pub use layout::node::Node;
+pub use layout::node::WideNode;
 pub use layout::quantized::{QuantizedBvh, QuantizedNode};
 pub use layout::serial::LoadError;
 pub use layout::triangle_packet::TrianglePacket;
@@ -185,8 +185,8 @@ pub use precision::fast::Fast;
 pub use precision::triangle_test::Precision;
 pub use precision::watertight::Watertight;
 pub use ray::{Hit, Ray};
-pub use simd::Lanes;
+pub use simd::Width;
 pub use trace::cost::{TraversalCost, traversal_cost};
-pub use trace::scalar::Scalar;
+pub use trace::one_by_one::OneByOne;
 pub use trace::single::{any_hit, closest_hit};
 pub use trace::stream::{Hybrid, Kernel, Packets, Single};

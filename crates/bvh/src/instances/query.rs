@@ -8,7 +8,7 @@ use crate::instances::placed::Placed;
 use crate::layout::child::Child;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
+use crate::simd::Width;
 use crate::trace::single::search;
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
@@ -54,7 +54,7 @@ pub fn closest_instance_hit<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> InstanceHit
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     query::<S, N, P, _, _, false>(simd, precision, bvh, ray, filter)
 }
@@ -70,7 +70,7 @@ pub fn any_instance_hit<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> bool
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     query::<S, N, P, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
 }
@@ -84,7 +84,7 @@ fn query<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, const A
     filter: &F,
 ) -> InstanceHit
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     if !ray.is_valid() {
         return InstanceHit::miss(ray.tmax);
@@ -123,7 +123,7 @@ struct InstanceSearch<'a, S, const N: usize, const P: usize, Pr, F, const ANY: b
 impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
     for InstanceSearch<'_, S, N, P, Pr, F, ANY>
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     const ANY: bool = ANY;
     type Item = Placed;

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::bounds::Bounds;
 use crate::layout::child::Child;
-use crate::layout::node::Node;
+use crate::layout::node::WideNode;
 use crate::layout::validate::MAX_DEPTH;
 
 /// Instances in the largest leaf. A leaf tests each box again before it transforms the ray.
@@ -37,13 +37,13 @@ impl Item {
 
 /// Nodes over the boxes, none of which is empty or NaN, parents first; and the boxes' numbers in
 /// the order in which the leaves name them.
-pub(crate) fn build_top_level<const N: usize>(boxes: &[Bounds]) -> (Vec<Node<N>>, Vec<u32>) {
+pub(crate) fn build_top_level<const N: usize>(boxes: &[Bounds]) -> (Vec<WideNode<N>>, Vec<u32>) {
     let mut items: Vec<Item> = boxes
         .iter()
         .zip(0..)
         .map(|(&bounds, index)| Item { bounds, index })
         .collect();
-    let mut nodes = vec![Node::VACANT];
+    let mut nodes = vec![WideNode::VACANT];
     // Nodes yet to fill: (node, what is below, level).
     let mut pending = vec![(0, 0..items.len(), 1)];
     while let Some((target, range, level)) = pending.pop() {
@@ -52,7 +52,7 @@ pub(crate) fn build_top_level<const N: usize>(boxes: &[Bounds]) -> (Vec<Node<N>>
             let child = if part.len() <= MAX_LEAF {
                 Child::leaf(part.start, part.len())
             } else {
-                nodes.push(Node::VACANT);
+                nodes.push(WideNode::VACANT);
                 pending.push((nodes.len() - 1, part, level + 1));
                 Child::node(nodes.len() - 1)
             };

@@ -8,7 +8,7 @@ use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
+use crate::simd::Width;
 use crate::trace::single::Search;
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
@@ -35,7 +35,7 @@ pub fn traversal_cost<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> TraversalCost
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     let cost = TraversalCost::default();
     if !ray.is_valid() {

@@ -8,8 +8,7 @@
 
 use std::mem::MaybeUninit;
 
-use crate::filter::improve;
-use crate::filter::{Culling, HitFilter};
+use crate::filter::{Culling, HitFilter, improve};
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
@@ -20,8 +19,7 @@ use crate::layout::validate::MAX_DEPTH;
 use crate::precision::triangle::{LaneHits, OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
-use crate::simd::Stored;
+use crate::simd::{Stored, Width};
 use crate::trace::prefetch::prefetch_child;
 use crate::trace::single::{query, search};
 use crate::trace::slab::Slab;
@@ -56,7 +54,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
     #[inline(always)]
     pub(crate) fn single<const ANY: bool>(&self, ray: &Ray) -> Hit
     where
-        S: Lanes<N> + Lanes<P>,
+        S: Width<N> + Width<P>,
     {
         query::<S, N, P, Pr, F, B, ANY>(self.simd, self.precision, self.bvh, ray, self.filter)
     }
@@ -71,7 +69,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
         class: Class,
         hits: &mut [Hit],
     ) where
-        S: Lanes<N> + Lanes<P> + Lanes<R>,
+        S: Width<N> + Width<P> + Width<R>,
     {
         let simd = self.simd;
         columns.clip(members.len());
@@ -186,7 +184,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
         best: &mut Best<R>,
     ) -> bool
     where
-        S: Lanes<R>,
+        S: Width<R>,
     {
         let simd = self.simd;
         let mut found = false;
@@ -275,7 +273,7 @@ impl<const R: usize> Best<R> {
 
     /// Takes the hits of some lanes with one triangle.
     #[inline(always)]
-    fn improve<S: Lanes<R>, const ANY: bool>(
+    fn improve<S: Width<R>, const ANY: bool>(
         &mut self,
         simd: S,
         hits: &LaneHits<S, R>,

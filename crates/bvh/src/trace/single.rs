@@ -2,8 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::filter::HitFilter;
-use crate::filter::improve;
+use crate::filter::{HitFilter, improve};
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
@@ -11,8 +10,7 @@ use crate::layout::triangle_packet::TrianglePacket;
 use crate::precision::triangle::Shear;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
-use crate::simd::Stored;
+use crate::simd::{Stored, Width};
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
 
@@ -27,7 +25,7 @@ pub fn closest_hit<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> Hit
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     query::<S, N, P, _, _, _, false>(simd, precision, bvh, ray, filter)
 }
@@ -43,7 +41,7 @@ pub fn any_hit<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> bool
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     query::<S, N, P, _, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
 }
@@ -66,7 +64,7 @@ pub(crate) fn query<
     filter: &F,
 ) -> Hit
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     if !ray.is_valid() {
         return Hit::miss(ray.tmax);
@@ -108,7 +106,7 @@ pub(crate) unsafe fn search<S, const N: usize, const P: usize, Pr, F, B, const A
     best: Hit,
 ) -> Hit
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
     Pr: Precision,
     F: HitFilter,
     B: Boxes<N>,
@@ -123,7 +121,7 @@ where
 }
 
 /// The search for one ray's hit.
-pub(crate) struct Search<'a, S: Lanes<P>, const P: usize, Pr, F, const ANY: bool> {
+pub(crate) struct Search<'a, S: Width<P>, const P: usize, Pr, F, const ANY: bool> {
     simd: S,
     precision: Pr,
     packets: &'a [TrianglePacket<P>],
@@ -133,7 +131,7 @@ pub(crate) struct Search<'a, S: Lanes<P>, const P: usize, Pr, F, const ANY: bool
     best: Hit,
 }
 
-impl<S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
+impl<S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
     for Search<'_, S, P, Pr, F, ANY>
 {
     const ANY: bool = ANY;
@@ -160,7 +158,7 @@ impl<S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> 
     }
 }
 
-impl<'a, S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>
+impl<'a, S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>
     Search<'a, S, P, Pr, F, ANY>
 {
     /// For a hit better than `best`. The ray is valid, `tmin` not negative.

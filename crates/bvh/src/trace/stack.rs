@@ -14,8 +14,7 @@ use std::mem::MaybeUninit;
 
 use crate::layout::child::Child;
 use crate::layout::validate::MAX_DEPTH;
-use crate::simd::Lanes;
-use crate::simd::Stored;
+use crate::simd::{Stored, Width};
 use crate::trace::sorting_network::{MOST_KEYS, sort};
 
 /// Subtrees yet to visit, nearest on top: entry distance in the high half, child in the low half.
@@ -63,7 +62,7 @@ impl<const N: usize> Stack<N> {
     /// # Safety
     /// `touched` must not have bits beyond `N`, and there must be room for `N` entries.
     #[inline(always)]
-    pub(crate) unsafe fn descend<S: Lanes<N>>(
+    pub(crate) unsafe fn descend<S: Width<N>>(
         &mut self,
         simd: S,
         touched: u32,

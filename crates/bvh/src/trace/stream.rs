@@ -7,7 +7,7 @@ use crate::layout::class::{Class, axes};
 use crate::layout::columns::Columns;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
+use crate::simd::Width;
 use crate::trace::packet::PacketKernel;
 use crate::trace::single::{any_hit, closest_hit};
 
@@ -58,7 +58,7 @@ pub struct Hybrid<const R: usize>;
 
 impl<S, const N: usize, const P: usize> Kernel<S, N, P> for Single
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     #[inline(always)]
     fn closest_hits(
@@ -97,7 +97,7 @@ macro_rules! implement_packet_kernel {
     ($kernel:ident, $few:expr) => {
         impl<S, const N: usize, const P: usize, const R: usize> Kernel<S, N, P> for $kernel<R>
         where
-            S: Lanes<N> + Lanes<P> + Lanes<R>,
+            S: Width<N> + Width<P> + Width<R>,
         {
             #[inline(always)]
             fn closest_hits(
@@ -196,7 +196,7 @@ fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, B, const ANY
     rays: &[Ray],
     hits: &mut [Hit],
 ) where
-    S: Lanes<N> + Lanes<P> + Lanes<R>,
+    S: Width<N> + Width<P> + Width<R>,
     Pr: Precision,
     F: HitFilter,
     B: Boxes<N>,
@@ -229,7 +229,7 @@ fn sort<S, const N: usize, const P: usize, const R: usize, Pr, F, B, const ANY: 
     rays: &[Ray],
     hits: &mut [Hit],
 ) where
-    S: Lanes<N> + Lanes<P> + Lanes<R>,
+    S: Width<N> + Width<P> + Width<R>,
     Pr: Precision,
     F: HitFilter,
     B: Boxes<N>,

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use crate::layout::boxes::Boxes;
 use crate::layout::child::Child;
-use crate::simd::Lanes;
+use crate::simd::Width;
 use crate::trace::prefetch::prefetch_child;
 use crate::trace::slab::Slab;
 use crate::trace::stack::Stack;
@@ -35,13 +35,13 @@ pub(crate) trait Visitor {
 }
 
 /// How rays are tested against the boxes of a node.
-pub(crate) trait BoxTest<S: Lanes<N>, const N: usize> {
+pub(crate) trait BoxTest<S: Width<N>, const N: usize> {
     /// The children whose boxes are touched before `tmax`, as bits, and where they are entered.
     fn touched_children(&self, simd: S, node: &impl Boxes<N>, tmax: f32) -> (u32, S::Float);
 }
 
 /// All at once.
-impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for Slab<S, N> {
+impl<S: Width<N>, const N: usize> BoxTest<S, N> for Slab<S, N> {
     #[inline(always)]
     fn touched_children(&self, simd: S, node: &impl Boxes<N>, tmax: f32) -> (u32, S::Float) {
         Slab::touched_children(self, simd, node, tmax)
@@ -54,7 +54,7 @@ impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for Slab<S, N> {
 /// The nodes must be sound, as [`crate::BvhView::new`] checks, and `start` one of their children
 /// or the root.
 #[inline(always)]
-pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, B: Boxes<N>, V: Visitor>(
+pub(crate) unsafe fn traverse<S: Width<N>, const N: usize, B: Boxes<N>, V: Visitor>(
     simd: S,
     nodes: &[B],
     start: Child,

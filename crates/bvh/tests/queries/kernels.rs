@@ -7,8 +7,8 @@ use std::ops::AddAssign;
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, Lanes, Packets, Precision, Ray,
-    Scalar, Single, Watertight, build, closest_hit,
+    AllHits, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets, Precision,
+    Ray, Single, Watertight, Width, build, closest_hit,
 };
 
 use crate::mesh::{Mesh, jittered_icosphere};
@@ -20,7 +20,7 @@ const BATCH: usize = if cfg!(miri) { 6 } else { 1000 };
 /// Of the mesh.
 const LEVELS: usize = if cfg!(miri) { 0 } else { 2 };
 
-const KERNELS: [&str; 4] = ["single", "packets", "hybrid", "scalar"];
+const KERNELS: [&str; 4] = ["single", "packets", "hybrid", "one by one"];
 
 /// A closed mesh around `center`, in hierarchies of all widths, and each triangle alone.
 struct Scene {
@@ -59,7 +59,7 @@ macro_rules! combinations {
     };
 }
 
-// For the best instruction set. Without lanes (trees of one triangle a packet, the scalar kernel)
+// For the best instruction set. Without lanes (trees of one triangle a packet, the kernel without SIMD)
 // `Fast` does not fuse, and gives other bits.
 combinations!(best:
     n2p1(2, 1, 4) by_all Watertight;
@@ -72,10 +72,10 @@ combinations!(best:
     n8p16(8, 16, 4) by_all Watertight;
     n16p8(16, 8, 8) by_all Watertight;
     n16p16(16, 16, 16) by_all Fast Exact;
-    n2p8(2, 8, 4) by_scalar Watertight;
-    n4p16(4, 16, 4) by_scalar Exact;
-    n8p1(8, 1, 4) by_scalar Exact;
-    n16p4(16, 4, 4) by_scalar Watertight;
+    n2p8(2, 8, 4) by_one_by_one Watertight;
+    n4p16(4, 16, 4) by_one_by_one Exact;
+    n8p1(8, 1, 4) by_one_by_one Exact;
+    n16p4(16, 4, 4) by_one_by_one Watertight;
 );
 // For the lesser ones.
 combinations!(others:
@@ -136,13 +136,13 @@ trait Judged: Precision + Debug {
 }
 
 macro_rules! implement_judged {
-    ($($precision:ident, $field:ident, $number:literal;)*) => {$(
+    ($($precision:ident, $field:ident, $index:literal;)*) => {$(
         impl Judged for $precision {
             fn of(batch: &Batch) -> &[Hit] {
                 &batch.$field
             }
             fn counts(tally: &mut Tally) -> &mut Counts {
-                &mut tally.precisions[$number]
+                &mut tally.precisions[$index]
             }
         }
     )*};
@@ -156,7 +156,7 @@ fn by_all<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
     batch: &Batch,
     tally: &mut Tally,
 ) where
-    S: Lanes<N> + Lanes<P> + Lanes<R>,
+    S: Width<N> + Width<P> + Width<R>,
 {
     by_some::<S, Pr, N, P, R>(simd, precision, bvh, batch, tally);
     compare(simd, Packets::<R>, precision, bvh, batch, tally, 1);
@@ -169,22 +169,22 @@ fn by_some<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
     batch: &Batch,
     tally: &mut Tally,
 ) where
-    S: Lanes<N> + Lanes<P> + Lanes<R>,
+    S: Width<N> + Width<P> + Width<R>,
 {
     compare(simd, Single, precision, bvh, batch, tally, 0);
     compare(simd, Hybrid::<R>, precision, bvh, batch, tally, 2);
 }
 
-fn by_scalar<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
+fn by_one_by_one<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
     simd: S,
     precision: Pr,
     bvh: &Bvh<N, P>,
     batch: &Batch,
     tally: &mut Tally,
 ) where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
-    compare(simd, Scalar, precision, bvh, batch, tally, 3);
+    compare(simd, OneByOne, precision, bvh, batch, tally, 3);
 }
 
 fn compare<S, Pr: Judged, const N: usize, const P: usize>(
@@ -194,9 +194,9 @@ fn compare<S, Pr: Judged, const N: usize, const P: usize>(
     bvh: &Bvh<N, P>,
     batch: &Batch,
     tally: &mut Tally,
-    number: usize,
+    index: usize,
 ) where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     let (rays, expected, counts) = (&batch.rays, Pr::of(batch), Pr::counts(tally));
     let mut hits = vec![Hit::miss(0.0); rays.len()];
@@ -210,10 +210,10 @@ fn compare<S, Pr: Judged, const N: usize, const P: usize>(
     );
     for i in 0..rays.len() {
         let kind = usize::from(batch.aimed[i]);
-        counts.answers[number][kind] += 1;
+        counts.answers[index][kind] += 1;
         if !same(&hits[i], &expected[i]) || occluded[i] != expected[i].is_hit() {
-            counts.disagreements[number][kind] += 1;
-            if counts.disagreements[number][kind] == 1 {
+            counts.disagreements[index][kind] += 1;
+            if counts.disagreements[index][kind] == 1 {
                 println!(
                     "{precision:?}, {kernel:?}, {N} children, {P} triangles: {:x?}\n  {:?}, {}, expected {:?}",
                     rays[i], hits[i], occluded[i], expected[i]

@@ -11,7 +11,7 @@ use crate::precision::triangle::Shear;
 use crate::precision::triangle_test::sealed::Test;
 use crate::precision::watertight::Watertight;
 use crate::ray::Ray;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 #[path = "../../../tests/queries/integers.rs"]
 mod integers;
@@ -104,7 +104,7 @@ fn hits<P: Test>(
         }
     }
     #[inline(always)]
-    fn run<S: Lanes<16>, P: Test>(
+    fn run<S: Width<16>, P: Test>(
         simd: S,
         precision: P,
         ray: &Ray,

@@ -1,11 +1,10 @@
-//! The scalar kernel: one box, or one triangle, at a time. It is what the others are compared with:
+//! The kernel without SIMD: one box, or one triangle, at a time. It is what the others are compared with:
 //! the same walk, and the same tests in one lane.
 
 use std::ops::ControlFlow;
 
 use crate::bounds::Bounds;
-use crate::filter::HitFilter;
-use crate::filter::improve;
+use crate::filter::{HitFilter, improve};
 use crate::layout::boxes::Boxes;
 use crate::layout::boxes::sealed::Sealed;
 use crate::layout::bvh::BvhView;
@@ -14,8 +13,7 @@ use crate::layout::triangle_packet::TrianglePacket;
 use crate::precision::triangle::{OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
-use crate::simd::Stored;
+use crate::simd::{Stored, Width};
 use crate::trace::slab::Slab;
 use crate::trace::stream::Kernel;
 use crate::trace::traverse::{BoxTest, Visitor, traverse};
@@ -25,11 +23,11 @@ use crate::trace::traverse::{BoxTest, Visitor, traverse};
 ///
 /// [`Fast`]: crate::Fast
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Scalar;
+pub struct OneByOne;
 
-impl<S, const N: usize, const P: usize> Kernel<S, N, P> for Scalar
+impl<S, const N: usize, const P: usize> Kernel<S, N, P> for OneByOne
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     #[inline(always)]
     fn closest_hits(
@@ -73,7 +71,7 @@ fn query<S, const N: usize, const P: usize, Pr, F, B, const ANY: bool>(
     filter: &F,
 ) -> Hit
 where
-    S: Lanes<N>,
+    S: Width<N>,
     Pr: Precision,
     F: HitFilter,
     B: Boxes<N>,
@@ -91,7 +89,7 @@ where
         filter,
         best: Hit::miss(tmax),
     };
-    let test = OneByOne(Slab::<S, 1>::of_ray(simd, ray, tmin));
+    let test = BoxByBox(Slab::<S, 1>::of_ray(simd, ray, tmin));
     // SAFETY: the view is structurally valid, and the root is there.
     unsafe { traverse(simd, bvh.nodes(), Child::ROOT, &test, &mut search) };
     if search.best.is_hit() {
@@ -102,9 +100,9 @@ where
 }
 
 /// The boxes of a node one after the other.
-struct OneByOne<S: Lanes<1>>(Slab<S, 1>);
+struct BoxByBox<S: Width<1>>(Slab<S, 1>);
 
-impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for OneByOne<S> {
+impl<S: Width<N>, const N: usize> BoxTest<S, N> for BoxByBox<S> {
     #[inline(always)]
     fn touched_children(&self, simd: S, node: &impl Boxes<N>, tmax: f32) -> (u32, S::Float) {
         let mut touched = 0;
@@ -116,7 +114,7 @@ impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for OneByOne<S> {
             let (touches, entry) = self.0.touched_children(simd, &OneBox { node, slot }, tmax);
             touched |= touches << slot;
             let mut lane = [0.0];
-            <S as Lanes<1>>::store(simd, entry, &mut lane);
+            <S as Width<1>>::store(simd, entry, &mut lane);
             [*distance] = lane;
         }
         (touched & node.used(), simd.load(&distances))
@@ -144,7 +142,7 @@ impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
     }
 
     #[inline(always)]
-    unsafe fn plane<S: Lanes<1>>(&self, simd: S, axis: usize, row: usize) -> S::Float {
+    unsafe fn plane<S: Width<1>>(&self, simd: S, axis: usize, row: usize) -> S::Float {
         simd.splat(self.node.plane_of(self.slot, axis, row))
     }
 
@@ -159,7 +157,7 @@ impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
 }
 
 /// The search for one ray's hit.
-struct Search<'a, S: Lanes<1>, const P: usize, Pr, F, const ANY: bool> {
+struct Search<'a, S: Width<1>, const P: usize, Pr, F, const ANY: bool> {
     simd: S,
     precision: Pr,
     packets: &'a [TrianglePacket<P>],
@@ -169,7 +167,7 @@ struct Search<'a, S: Lanes<1>, const P: usize, Pr, F, const ANY: bool> {
     best: Hit,
 }
 
-impl<S: Lanes<1>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
+impl<S: Width<1>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
     for Search<'_, S, P, Pr, F, ANY>
 {
     const ANY: bool = ANY;
