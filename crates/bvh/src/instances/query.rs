@@ -9,6 +9,7 @@ use crate::layout::child::Child;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
+use crate::trace::goal::{AnyHit, ClosestHit, Goal};
 use crate::trace::single::search;
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
@@ -56,7 +57,7 @@ pub fn closest_instance_hit<S, const N: usize, const P: usize>(
 where
     S: Width<N> + Width<P>,
 {
-    query::<S, N, P, _, _, false>(simd, precision, bvh, ray, filter)
+    query(simd, precision, bvh, ray, filter, ClosestHit)
 }
 
 /// Whether there is a hit with an instance in the ray's interval that `filter` accepts: exactly
@@ -72,16 +73,17 @@ pub fn any_instance_hit<S, const N: usize, const P: usize>(
 where
     S: Width<N> + Width<P>,
 {
-    query::<S, N, P, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
+    query(simd, precision, bvh, ray, filter, AnyHit).is_hit()
 }
 
 #[inline(always)]
-fn query<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>(
+fn query<S, const N: usize, const P: usize>(
     simd: S,
-    precision: Pr,
+    precision: impl Precision,
     bvh: &InstancedBvh<N, P>,
     ray: &Ray,
-    filter: &F,
+    filter: &impl HitFilter,
+    goal: impl Goal,
 ) -> InstanceHit
 where
     S: Width<N> + Width<P>,
@@ -90,13 +92,14 @@ where
         return InstanceHit::miss(ray.tmax);
     }
     let (tmin, tmax) = ray.interval();
-    let mut search = InstanceSearch::<S, N, P, Pr, F, ANY> {
+    let mut search = InstanceSearch {
         simd,
         precision,
         bvh,
         ray,
         tmin,
         filter,
+        goal,
         best: InstanceHit::miss(tmax),
     };
     let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
@@ -110,22 +113,23 @@ where
 }
 
 /// The search for one ray's hit among the instances.
-struct InstanceSearch<'a, S, const N: usize, const P: usize, Pr, F, const ANY: bool> {
+struct InstanceSearch<'a, S, const N: usize, const P: usize, Pr, F, G> {
     simd: S,
     precision: Pr,
     bvh: &'a InstancedBvh<N, P>,
     ray: &'a Ray,
     tmin: f32,
     filter: &'a F,
+    goal: G,
     best: InstanceHit,
 }
 
-impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
-    for InstanceSearch<'_, S, N, P, Pr, F, ANY>
+impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
+    for InstanceSearch<'_, S, N, P, Pr, F, G>
 where
     S: Width<N> + Width<P>,
 {
-    const ANY: bool = ANY;
+    type Goal = G;
     type Item = Placed;
 
     #[inline(always)]
@@ -150,7 +154,7 @@ where
             }
             // SAFETY: the root is there.
             let mut hit = unsafe {
-                search::<S, N, P, Pr, F, _, ANY>(
+                search(
                     self.simd,
                     self.precision,
                     self.bvh.objects[placed.bvh as usize].view(),
@@ -158,6 +162,7 @@ where
                     &object_ray,
                     self.tmin,
                     self.filter,
+                    self.goal,
                     Hit::miss(self.best.hit.t),
                 )
             };
@@ -168,9 +173,7 @@ where
             let instance = placed.instance;
             if (hit.t, instance) < (self.best.hit.t, self.best.instance) {
                 self.best = InstanceHit { hit, instance };
-                if ANY {
-                    return ControlFlow::Break(());
-                }
+                self.goal.found()?;
             }
         }
         ControlFlow::Continue(())

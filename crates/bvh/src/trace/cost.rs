@@ -9,6 +9,7 @@ use crate::layout::child::Child;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
+use crate::trace::goal::ClosestHit;
 use crate::trace::single::Search;
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
@@ -43,8 +44,9 @@ where
     }
     let (tmin, tmax) = ray.interval();
     let (packets, best) = (bvh.packets(), Hit::miss(tmax));
-    let visitor =
-        Search::<S, P, _, _, false>::new(simd, precision, packets, ray, tmin, filter, best);
+    let visitor = Search::new(
+        simd, precision, packets, ray, tmin, filter, ClosestHit, best,
+    );
     let mut counted = Counted { visitor, cost };
     let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
     // SAFETY: the view is structurally valid, and the root is there.
@@ -59,7 +61,7 @@ struct Counted<V> {
 }
 
 impl<V: Visitor> Visitor for Counted<V> {
-    const ANY: bool = V::ANY;
+    type Goal = V::Goal;
     type Item = V::Item;
 
     #[inline(always)]

@@ -2,6 +2,7 @@
 //! them, for single rays and for packets.
 
 pub(crate) mod cost;
+pub(crate) mod goal;
 pub(crate) mod one_by_one;
 mod packet;
 mod prefetch;

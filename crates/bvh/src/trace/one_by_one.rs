@@ -14,6 +14,7 @@ use crate::precision::triangle::{OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::{Stored, Width};
+use crate::trace::goal::{AnyHit, ClosestHit, Goal};
 use crate::trace::slab::Slab;
 use crate::trace::stream::Kernel;
 use crate::trace::traverse::{BoxTest, Visitor, traverse};
@@ -41,7 +42,7 @@ where
     ) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = query::<S, N, P, _, _, _, false>(simd, precision, bvh, ray, filter);
+            *hit = query(simd, precision, bvh, ray, filter, ClosestHit);
         }
     }
 
@@ -57,36 +58,32 @@ where
     ) {
         assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
         for (ray, occluded) in rays.iter().zip(occluded) {
-            *occluded = query::<S, N, P, _, _, _, true>(simd, precision, bvh, ray, filter).is_hit();
+            *occluded = query(simd, precision, bvh, ray, filter, AnyHit).is_hit();
         }
     }
 }
 
 #[inline(always)]
-fn query<S, const N: usize, const P: usize, Pr, F, B, const ANY: bool>(
+fn query<S: Width<N>, const N: usize, const P: usize>(
     simd: S,
-    precision: Pr,
-    bvh: BvhView<'_, N, P, B>,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
     ray: &Ray,
-    filter: &F,
-) -> Hit
-where
-    S: Width<N>,
-    Pr: Precision,
-    F: HitFilter,
-    B: Boxes<N>,
-{
+    filter: &impl HitFilter,
+    goal: impl Goal,
+) -> Hit {
     if !ray.is_valid() {
         return Hit::miss(ray.tmax);
     }
     let (tmin, tmax) = ray.interval();
-    let mut search = Search::<S, P, Pr, F, ANY> {
+    let mut search = Search {
         simd,
         precision,
         packets: bvh.packets(),
         shear: Shear::<S, 1>::of_ray(simd, ray, tmin),
         ray,
         filter,
+        goal,
         best: Hit::miss(tmax),
     };
     let test = BoxByBox(Slab::<S, 1>::of_ray(simd, ray, tmin));
@@ -157,20 +154,21 @@ impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
 }
 
 /// The search for one ray's hit.
-struct Search<'a, S: Width<1>, const P: usize, Pr, F, const ANY: bool> {
+struct Search<'a, S: Width<1>, const P: usize, Pr, F, G> {
     simd: S,
     precision: Pr,
     packets: &'a [TrianglePacket<P>],
     shear: Shear<'a, S, 1>,
     ray: &'a Ray,
     filter: &'a F,
+    goal: G,
     best: Hit,
 }
 
-impl<S: Width<1>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
-    for Search<'_, S, P, Pr, F, ANY>
+impl<S: Width<1>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
+    for Search<'_, S, P, Pr, F, G>
 {
-    const ANY: bool = ANY;
+    type Goal = G;
     type Item = TrianglePacket<P>;
 
     #[inline(always)]
@@ -199,8 +197,8 @@ impl<S: Width<1>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> 
                 let Some(test) = test else { continue };
                 let [Stored([t]), Stored([u]), Stored([v])] = test.store(self.simd);
                 let hit = Hit { t, u, v, prim };
-                if improve(&mut self.best, hit, test.back != 0, self.ray, self.filter) && ANY {
-                    return ControlFlow::Break(());
+                if improve(&mut self.best, hit, test.back != 0, self.ray, self.filter) {
+                    self.goal.found()?;
                 }
             }
         }

@@ -11,6 +11,7 @@ use crate::precision::triangle::Shear;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::{Stored, Width};
+use crate::trace::goal::{AnyHit, ClosestHit, Goal};
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
 
@@ -27,7 +28,7 @@ pub fn closest_hit<S, const N: usize, const P: usize>(
 where
     S: Width<N> + Width<P>,
 {
-    query::<S, N, P, _, _, _, false>(simd, precision, bvh, ray, filter)
+    query(simd, precision, bvh, ray, filter, ClosestHit)
 }
 
 /// Whether there is a hit in the ray's interval that `filter` accepts: exactly when
@@ -43,25 +44,18 @@ pub fn any_hit<S, const N: usize, const P: usize>(
 where
     S: Width<N> + Width<P>,
 {
-    query::<S, N, P, _, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
+    query(simd, precision, bvh, ray, filter, AnyHit).is_hit()
 }
 
 /// Either query; where any hit will do, the hit is any.
 #[inline(always)]
-pub(crate) fn query<
-    S,
-    const N: usize,
-    const P: usize,
-    Pr: Precision,
-    F: HitFilter,
-    B: Boxes<N>,
-    const ANY: bool,
->(
+pub(crate) fn query<S, const N: usize, const P: usize>(
     simd: S,
-    precision: Pr,
-    bvh: BvhView<'_, N, P, B>,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
     ray: &Ray,
-    filter: &F,
+    filter: &impl HitFilter,
+    goal: impl Goal,
 ) -> Hit
 where
     S: Width<N> + Width<P>,
@@ -72,7 +66,7 @@ where
     let (tmin, tmax) = ray.interval();
     // SAFETY: the root is there.
     let best = unsafe {
-        search::<S, N, P, Pr, F, B, ANY>(
+        search(
             simd,
             precision,
             bvh,
@@ -80,6 +74,7 @@ where
             ray,
             tmin,
             filter,
+            goal,
             Hit::miss(tmax),
         )
     };
@@ -95,46 +90,45 @@ where
 /// # Safety
 /// `start` must be the hierarchy's root or one of its nodes' children.
 #[inline(always)]
-pub(crate) unsafe fn search<S, const N: usize, const P: usize, Pr, F, B, const ANY: bool>(
+#[expect(clippy::too_many_arguments)]
+pub(crate) unsafe fn search<S, const N: usize, const P: usize>(
     simd: S,
-    precision: Pr,
-    bvh: BvhView<'_, N, P, B>,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
     start: Child,
     ray: &Ray,
     tmin: f32,
-    filter: &F,
+    filter: &impl HitFilter,
+    goal: impl Goal,
     best: Hit,
 ) -> Hit
 where
     S: Width<N> + Width<P>,
-    Pr: Precision,
-    F: HitFilter,
-    B: Boxes<N>,
 {
     let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
     let packets = bvh.packets();
-    let mut search =
-        Search::<S, P, Pr, F, ANY>::new(simd, precision, packets, ray, tmin, filter, best);
+    let mut search = Search::new(simd, precision, packets, ray, tmin, filter, goal, best);
     // SAFETY: the view is structurally valid, and the start is by this function's contract.
     unsafe { traverse(simd, bvh.nodes(), start, &slab, &mut search) };
     search.best
 }
 
 /// The search for one ray's hit.
-pub(crate) struct Search<'a, S: Width<P>, const P: usize, Pr, F, const ANY: bool> {
+pub(crate) struct Search<'a, S: Width<P>, const P: usize, Pr, F, G> {
     simd: S,
     precision: Pr,
     packets: &'a [TrianglePacket<P>],
     shear: Shear<'a, S, P>,
     ray: &'a Ray,
     filter: &'a F,
+    goal: G,
     best: Hit,
 }
 
-impl<S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
-    for Search<'_, S, P, Pr, F, ANY>
+impl<S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
+    for Search<'_, S, P, Pr, F, G>
 {
-    const ANY: bool = ANY;
+    type Goal = G;
     type Item = TrianglePacket<P>;
 
     #[inline(always)]
@@ -158,8 +152,8 @@ impl<S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> 
     }
 }
 
-impl<'a, S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>
-    Search<'a, S, P, Pr, F, ANY>
+impl<'a, S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, G: Goal>
+    Search<'a, S, P, Pr, F, G>
 {
     /// For a hit better than `best`. The ray is valid, `tmin` not negative.
     #[inline(always)]
@@ -170,6 +164,7 @@ impl<'a, S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bo
         ray: &'a Ray,
         tmin: f32,
         filter: &'a F,
+        goal: G,
         best: Hit,
     ) -> Self {
         Search {
@@ -179,6 +174,7 @@ impl<'a, S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bo
             shear: Shear::of_ray(simd, ray, tmin),
             ray,
             filter,
+            goal,
             best,
         }
     }
@@ -206,8 +202,8 @@ impl<'a, S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bo
                 prim: packet.prim_ids[lane],
             };
             let back = hits.back >> lane & 1 == 1;
-            if improve(&mut self.best, hit, back, self.ray, self.filter) && ANY {
-                return ControlFlow::Break(());
+            if improve(&mut self.best, hit, back, self.ray, self.filter) {
+                self.goal.found()?;
             }
         }
         ControlFlow::Continue(())

@@ -8,6 +8,7 @@ use std::ops::ControlFlow;
 use crate::layout::boxes::Boxes;
 use crate::layout::child::Child;
 use crate::simd::Width;
+use crate::trace::goal::Goal;
 use crate::trace::prefetch::prefetch_child;
 use crate::trace::slab::Slab;
 use crate::trace::stack::Stack;
@@ -18,8 +19,8 @@ const PREFETCHED: usize = 2;
 
 /// What happens at leaves.
 pub(crate) trait Visitor {
-    /// Whether any hit will do: then the order of visits does not matter.
-    const ANY: bool;
+    /// What the walk is for.
+    type Goal: Goal;
     /// What leaves hold.
     type Item;
 
@@ -83,7 +84,7 @@ pub(crate) unsafe fn traverse<S: Width<N>, const N: usize, B: Boxes<N>, V: Visit
             // each level of the tree, and each of the at most MAX_DEPTH nodes on the path to this
             // one left at most N - 1 behind, since one of its children was descended into.
             current = unsafe {
-                if V::ANY {
+                if V::Goal::ANY {
                     stack.descend_unsorted(touched, node.children())
                 } else {
                     stack.descend(simd, touched, entry, node.children())
@@ -95,7 +96,7 @@ pub(crate) unsafe fn traverse<S: Width<N>, const N: usize, B: Boxes<N>, V: Visit
         }
         // SAFETY: entries above the bottom have been written, see `Stack`.
         match unsafe {
-            stack.pop(if V::ANY {
+            stack.pop(if V::Goal::ANY {
                 f32::INFINITY
             } else {
                 visitor.tmax()
