@@ -11,7 +11,7 @@
 //! let triangles = [[0, 1, 2], [0, 2, 3]];
 //! let bvh: Bvh<8> = build(&positions, &triangles, None, BuildQuality::Best);
 //!
-//! let down = |x, y| Ray { org: [x, y, 2.0], tmin: 0.0, dir: [0.0, 0.0, -1.0], tmax: f32::INFINITY };
+//! let down = |x, y| Ray::unbounded([x, y, 2.0], [0.0, 0.0, -1.0]);
 //! let hit = bvh.closest_hit(&down(0.25, 0.75));
 //! assert_eq!((hit.prim, hit.t), (1, 2.0));
 //! assert!(bvh.any_hit(&down(0.5, 0.5)) && !bvh.any_hit(&down(2.0, 0.5)));
@@ -69,7 +69,7 @@
 //!     })
 //!     .collect();
 //! let scene = InstancedBvh::new(vec![bvh], &instances)?;
-//! let ray = Ray { org: [0.0, 0.0, -7.0], tmin: 0.0, dir: [0.0, 0.0, -1.0], tmax: f32::INFINITY };
+//! let ray = Ray::unbounded([0.0, 0.0, -7.0], [0.0, 0.0, -1.0]);
 //! let hit = scene.closest_hit(&ray);
 //! assert_eq!((hit.instance, hit.hit.prim, hit.hit.t), (2, 0, 3.0));
 //! # Ok::<(), residual_bvh::InvalidInstance>(())

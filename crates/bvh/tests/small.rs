@@ -25,12 +25,7 @@ fn squares() -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
 
 /// Towards the squares, one beside them, one that is no ray.
 fn rays() -> Vec<Ray> {
-    let ray = |x: f32, z: f32| Ray {
-        org: [x, 0.25, z],
-        tmin: 0.0,
-        dir: [0.01, 0.02, -1.0],
-        tmax: f32::INFINITY,
-    };
+    let ray = |x: f32, z: f32| Ray::unbounded([x, 0.25, z], [0.01, 0.02, -1.0]);
     let mut rays: Vec<Ray> = (0..6)
         .map(|i| ray(0.1 * i as f32, 0.5 - i as f32))
         .collect();

@@ -1,5 +1,6 @@
 //! Queries of two-level hierarchies.
 
+use std::mem::{offset_of, size_of};
 use std::ops::ControlFlow;
 
 use crate::filter::HitFilter;
@@ -24,6 +25,8 @@ pub struct InstanceHit {
     /// Index of the instance; [`Hit::NONE`] on a miss.
     pub instance: u32,
 }
+
+const _: () = assert!(size_of::<InstanceHit>() == 20 && offset_of!(InstanceHit, instance) == 16);
 
 impl InstanceHit {
     /// The answer for a ray that meets nothing up to `tmax`.

@@ -9,8 +9,15 @@ use crate::simd::Width;
 /// A layout of nodes that the kernels can traverse: [`WideNode`](crate::WideNode) and
 /// [`QuantizedNode`](crate::QuantizedNode), and nothing else.
 ///
-/// Planes are numbered as the rows of [`WideNode::bounds`](crate::WideNode::bounds): `2 * axis`, and one more for the upper.
-pub trait Boxes<const N: usize>: sealed::Sealed + Copy + Debug + Send + Sync {
+/// Planes have the indices of the rows of [`WideNode::bounds`](crate::WideNode::bounds): `2 * axis`,
+/// and one more for the upper.
+///
+/// # Safety
+/// [`children`](Boxes::children) must give the same array each time: what [`BvhView::new`] has found
+/// sound is traversed without further checks.
+///
+/// [`BvhView::new`]: crate::BvhView::new
+pub unsafe trait Boxes<const N: usize>: sealed::Sealed + Copy + Debug + Send + Sync {
     /// What each box holds, as in [`WideNode::children`](crate::WideNode::children).
     fn children(&self) -> &[u32; N];
 
@@ -23,7 +30,7 @@ pub trait Boxes<const N: usize>: sealed::Sealed + Copy + Debug + Send + Sync {
     /// `row` must be one of the two of this axis.
     unsafe fn plane<S: Width<N>>(&self, simd: S, axis: usize, row: usize) -> S::Float;
 
-    /// The same number for one box. `row` is of this axis.
+    /// The same plane of one box. `row` is of this axis.
     fn plane_of(&self, slot: usize, axis: usize, row: usize) -> f32;
 
     /// One box; empty in an unused slot.
@@ -31,6 +38,6 @@ pub trait Boxes<const N: usize>: sealed::Sealed + Copy + Debug + Send + Sync {
 }
 
 pub(crate) mod sealed {
-    /// Soundness rests on children that do not change between check and use.
+    /// Keeps other layouts out.
     pub trait Sealed {}
 }

@@ -66,7 +66,8 @@ impl<const N: usize> WideNode<N> {
 
 impl<const N: usize> Sealed for WideNode<N> {}
 
-impl<const N: usize> Boxes<N> for WideNode<N> {
+// SAFETY: the children are a field.
+unsafe impl<const N: usize> Boxes<N> for WideNode<N> {
     #[inline(always)]
     fn children(&self) -> &[u32; N] {
         &self.children

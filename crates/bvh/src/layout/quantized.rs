@@ -177,7 +177,8 @@ impl<const N: usize> From<&WideNode<N>> for QuantizedNode<N> {
 
 impl<const N: usize> Sealed for QuantizedNode<N> {}
 
-impl<const N: usize> Boxes<N> for QuantizedNode<N> {
+// SAFETY: the children are a field.
+unsafe impl<const N: usize> Boxes<N> for QuantizedNode<N> {
     #[inline(always)]
     fn children(&self) -> &[u32; N] {
         &self.children

@@ -127,7 +127,8 @@ struct OneBox<'a, B, const N: usize> {
 
 impl<B, const N: usize> Sealed for OneBox<'_, B, N> {}
 
-impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
+// SAFETY: the child is one of a node that gives the same children each time.
+unsafe impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
     #[inline(always)]
     fn children(&self) -> &[u32; 1] {
         std::array::from_ref(&self.node.children()[self.slot])

@@ -70,6 +70,8 @@ pub(crate) unsafe fn traverse<S: Width<N>, const N: usize, B: Boxes<N>, V: Visit
             let node = unsafe { nodes.get_unchecked(current.0 as usize) };
             visitor.node();
             let (touched, entry) = test.touched_children(simd, node, visitor.tmax());
+            // Unsafe code relies on these bits, so no test is trusted with them.
+            let touched = touched & (u32::MAX >> (32 - N));
             let mut rest = touched;
             for _ in 0..PREFETCHED {
                 if rest == 0 {

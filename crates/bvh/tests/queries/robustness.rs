@@ -115,12 +115,7 @@ fn special_rays() {
         widths.closest(&ray, &AllHits);
     }
 
-    let good = Ray {
-        org: [0.0; 3],
-        tmin: 0.0,
-        dir: [0.0, 0.0, 1.0],
-        tmax: f32::INFINITY,
-    };
+    let good = Ray::unbounded([0.0; 3], [0.0, 0.0, 1.0]);
     let widths = Widths::new(&mesh, BuildQuality::Medium);
     assert!(widths.closest(&good, &AllHits).is_hit());
     let bad = [
@@ -196,12 +191,7 @@ fn intervals_are_closed() {
     let widths = Widths::new(&mesh, BuildQuality::Best);
     for _ in 0..trials(500) {
         let [x, y, _] = random.in_cube(1.0);
-        let mut ray = Ray {
-            org: [x, y, -3.0],
-            tmin: 0.0,
-            dir: random.in_cube(0.05),
-            tmax: f32::INFINITY,
-        };
+        let mut ray = Ray::unbounded([x, y, -3.0], random.in_cube(0.05));
         ray.dir[2] = 1.0;
         let mut layers = 0;
         loop {

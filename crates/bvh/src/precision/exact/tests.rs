@@ -57,12 +57,7 @@ impl Random {
 }
 
 fn towards(org: [f32; 3], target: [f32; 3]) -> Ray {
-    Ray {
-        org,
-        tmin: 0.0,
-        dir: [0, 1, 2].map(|axis| target[axis] - org[axis]),
-        tmax: f32::INFINITY,
-    }
+    Ray::unbounded(org, [0, 1, 2].map(|axis| target[axis] - org[axis]))
 }
 
 /// `[t, u, v]` where the line meets the closed triangle, and whether from behind.

@@ -109,12 +109,7 @@ fn exact_touches_are_found() {
             continue;
         }
         let float = |p: [i64; 3]| p.map(|x| x as f32);
-        let ray = Ray {
-            org: float(org),
-            tmin: 0.0,
-            dir: float(dir),
-            tmax: f32::INFINITY,
-        };
+        let ray = Ray::unbounded(float(org), float(dir));
         let found = touched(
             &ray,
             &boxes.map(|(lo, hi)| Bounds {
@@ -161,12 +156,7 @@ fn rays_in_the_planes_of_boxes() {
                             [(0.0, 0b0001), (0.5, 0b0001), (1.0, 0b0111), (2.0, 0b1010)]
                         {
                             org[plane_axis] = at;
-                            let ray = Ray {
-                                org,
-                                tmin: 0.0,
-                                dir,
-                                tmax: f32::INFINITY,
-                            };
+                            let ray = Ray::unbounded(org, dir);
                             assert_eq!(touched(&ray, &boxes), expected, "{ray:?}");
                         }
                     }
@@ -202,12 +192,7 @@ fn quantised_slots() {
         let used = random.below(4) as usize;
         let distance = [1.0, 1e3, 1e6][round % 3];
         let org = [0; 3].map(|_| (random.below(2001) - 1000) as f32 * 1e-3 * distance);
-        let ray = Ray {
-            org,
-            tmin: 0.0,
-            dir: org.map(|x| random.below(20) as f32 * 1e-3 - x),
-            tmax: f32::INFINITY,
-        };
+        let ray = Ray::unbounded(org, org.map(|x| random.below(20) as f32 * 1e-3 - x));
         let (four, sixteen) = (node::<4>(&mut random, used), node::<16>(&mut random, used));
         let inverted = WideNode {
             bounds: [0, 1, 2, 3, 4, 5].map(|row| [[0.02, 0.0][row % 2]; 4]),
