@@ -246,8 +246,8 @@ fn bounds_of(references: &[Reference]) -> Bounds {
         .reduce(|| Bounds::EMPTY, |a, b| a.union(&b))
 }
 
-/// The binary nodes that become the children of the wide node made from `node`, and their number. Only a root that
-/// holds everything in one leaf has itself as its child.
+/// The binary nodes that become the children of the wide node made from `node`, and how many they are.
+/// Only a root that holds everything in one leaf has itself as its child.
 fn slots_of<const N: usize>(tree: &BinaryTree, plans: &[Plan<N>], node: u32) -> ([u32; N], usize) {
     let (mut slots, mut used) = ([node; N], 0);
     let share = plans[node as usize].left_slots as usize;

@@ -17,7 +17,7 @@ pub(crate) struct Columns<const R: usize> {
 }
 
 impl<const R: usize> Columns<R> {
-    /// The rays that `members` number. What room is left repeats the first.
+    /// The rays whose indices are `members`. What room is left repeats the first.
     #[inline(always)]
     pub(crate) fn gather(rays: &[Ray], members: &[u16]) -> Columns<R> {
         let mut columns = Columns {

@@ -14,8 +14,8 @@ use crate::simd::Width;
 pub struct WideNode<const N: usize> {
     /// `[lo.x, hi.x, lo.y, hi.y, lo.z, hi.z]`, each `[child]`; an unused slot has the empty box.
     pub bounds: [[f32; N]; 6],
-    /// What each box holds: the number of a node; or, with the high bit set, a leaf of (bits 27 to 30) packets from the
-    /// packet (lower 27 bits) on. A leaf of no packets is an unused slot.
+    /// What each box holds: the index of a node; or, with the high bit set, a leaf: bits 27 to 30 are the
+    /// count of its packets, the lower 27 bits the index of the first. A leaf of no packets is an unused slot.
     pub children: [u32; N],
 }
 

@@ -102,7 +102,7 @@ impl Grid {
         self.origin + f32::from(q) * self.scale()
     }
 
-    /// The numbers of the planes next to an interval within the grid, outwards.
+    /// The indices of the planes next to an interval within the grid, outwards.
     fn enclosing(self, lo: f32, hi: f32) -> [u8; 2] {
         if self.exponent == UNBOUNDED {
             return [0, 0];
@@ -268,7 +268,7 @@ impl<const N: usize, const P: usize> QuantizedBvh<N, P> {
     /// What the kernels take.
     #[inline(always)]
     pub fn view(&self) -> BvhView<'_, N, P, QuantizedNode<N>> {
-        // SAFETY: the children are those of a sound hierarchy, in the same places but for slots
+        // SAFETY: the children are those of a sound hierarchy, in the same order but for slots
         // left out; boxes lie inside of each other by construction.
         unsafe { BvhView::new_unchecked(&self.nodes, &self.packets) }
     }

@@ -6,8 +6,8 @@
 //! magic      8 bytes "ResidBVH"
 //! version    u32
 //! N, P       u32, u32
-//! nodes      u64, their number
-//! packets    u64, their number
+//! nodes      u64, how many
+//! packets    u64, how many
 //! cost       f32, by the surface area heuristic
 //! nodes      each 6 × N f32 bounds, N u32 children
 //! packets    each 9 × P f32 vertices, P u32 triangle indices
@@ -97,8 +97,8 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
     /// Writes the hierarchy, in pieces of some kilobytes. Equal hierarchies give equal bytes.
     pub fn write_to(&self, writer: &mut impl Write) -> io::Result<()> {
         writer.write_all(&MAGIC)?;
-        for number in [VERSION, N as u32, P as u32] {
-            writer.write_all(&number.to_le_bytes())?;
+        for word in [VERSION, N as u32, P as u32] {
+            writer.write_all(&word.to_le_bytes())?;
         }
         for count in [self.nodes.len(), self.packets.len()] {
             writer.write_all(&(count as u64).to_le_bytes())?;
@@ -109,7 +109,7 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
     }
 
     /// Reads what [`write_to`](Bvh::write_to) wrote, and no byte more. Memory is taken as the bytes
-    /// arrive, whatever their number is said to be.
+    /// arrive, however many are said to follow.
     pub fn read_from(reader: &mut impl Read) -> Result<Bvh<N, P>, LoadError> {
         let magic: [u8; 8] = read(reader)?;
         if magic != MAGIC {

@@ -72,7 +72,7 @@ where
         )
     }
 
-    /// Traces at most `R` rays of one class, which `members` number and `columns` hold.
+    /// Traces at most `R` rays of one class, whose indices are `members` and which `columns` hold.
     #[inline(always)]
     pub(crate) fn trace<const R: usize>(
         &self,
@@ -143,17 +143,17 @@ where
                         rays: touching,
                     };
                     // Insertion, nearest on top; where any hit will do, the order is the builder's.
-                    let mut place = len;
-                    while !G::ANY && place > base {
+                    let mut index = len;
+                    while !G::ANY && index > base {
                         // SAFETY: entries below `len` are initialised.
-                        let other = unsafe { stack[place - 1].assume_init() };
+                        let other = unsafe { stack[index - 1].assume_init() };
                         if other.distance >= entry.distance {
                             break;
                         }
-                        stack[place].write(other);
-                        place -= 1;
+                        stack[index].write(other);
+                        index -= 1;
                     }
-                    stack[place].write(entry);
+                    stack[index].write(entry);
                     len += 1;
                 }
             }
@@ -247,7 +247,7 @@ struct Best<const R: usize> {
     t: [f32; R],
     u: [f32; R],
     v: [f32; R],
-    /// The bits of triangle numbers.
+    /// The bits of triangle indices.
     prim: [f32; R],
 }
 
@@ -304,7 +304,7 @@ impl<const R: usize> Best<R> {
     }
 }
 
-/// The numbers of the bits that are set.
+/// The indices of the bits that are set.
 #[inline(always)]
 fn lanes(bits: u32) -> impl Iterator<Item = usize> {
     let mut rest = bits;

@@ -161,7 +161,7 @@ implement_packet_kernel!(Hybrid, R as u32 / 4);
 /// Rays that are sorted into packets together.
 const WINDOW: usize = 256;
 
-/// The numbers of rays that are in order as they are.
+/// The indices of rays that are in order as they are.
 const IN_ORDER: [u16; 32] = {
     let mut order = [0; 32];
     let mut i = 0;
@@ -186,7 +186,7 @@ fn is_coherent(rays: &[Ray]) -> bool {
         let slopes = |ray: &Ray| [ray.dir[kx] / ray.dir[kz], ray.dir[ky] / ray.dir[kz]];
         let (a, b) = (slopes(&pair[0]), slopes(&pair[1]));
         let near = (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) < SIMILAR;
-        similar += u32::from(near && Class::number(&pair[0]) == Class::number(&pair[1]));
+        similar += u32::from(near && Class::index(&pair[0]) == Class::index(&pair[1]));
         pairs += 1;
     }
     2 * similar >= pairs
@@ -232,22 +232,21 @@ where
     where
         S: Width<N> + Width<P> + Width<R>,
     {
-        let mut numbers = [0u8; WINDOW];
+        let mut classes = [0u8; WINDOW];
         let mut ends = [0u16; Class::INVALID + 1];
-        for (ray, number) in rays.iter().zip(&mut numbers) {
-            let class = Class::number(ray);
-            *number = class as u8;
-            ends[class] += 1;
+        for (ray, class) in rays.iter().zip(&mut classes) {
+            *class = Class::index(ray) as u8;
+            ends[*class as usize] += 1;
         }
         let mut start = 0;
         for end in &mut ends {
             (*end, start) = (start, start + *end);
         }
         let mut order = [0u16; WINDOW];
-        for (ray, &class) in numbers[..rays.len()].iter().enumerate() {
-            let place = &mut ends[class as usize];
-            order[*place as usize] = ray as u16;
-            *place += 1;
+        for (ray, &class) in classes[..rays.len()].iter().enumerate() {
+            let end = &mut ends[class as usize];
+            order[*end as usize] = ray as u16;
+            *end += 1;
         }
         let mut start = 0;
         for &end in &ends[..Class::INVALID] {

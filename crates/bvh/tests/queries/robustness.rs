@@ -58,7 +58,7 @@ fn random_bit_patterns() {
     }
 }
 
-/// Zeros, subnormals, huge numbers, infinities and NaN in every place of a ray (I-12).
+/// Zeros, subnormals, huge numbers, infinities and NaN in every component of a ray (I-12).
 #[test]
 fn special_rays() {
     let values = [
@@ -85,8 +85,8 @@ fn special_rays() {
         if random.below(2) == 0 {
             (tmin, tmax) = (0.0, f32::INFINITY);
         }
-        // Mostly ordinary components, so that rays go wrong in one place at a time.
-        let mut place = |ordinary: f32| {
+        // Mostly ordinary components, so that rays go wrong in one component at a time.
+        let mut component = |ordinary: f32| {
             if random.below(4) == 0 {
                 values[random.below(values.len())]
             } else {
@@ -94,8 +94,8 @@ fn special_rays() {
             }
         };
         let (org, dir) = (
-            [0; 3].map(|_| place(0.25)),
-            [place(0.3), place(-0.4), place(1.0)],
+            [0; 3].map(|_| component(0.25)),
+            [component(0.3), component(-0.4), component(1.0)],
         );
         rays.push(Ray {
             org,
