@@ -146,6 +146,9 @@
 //! Ray ─ prepared ray ─ traverse { slab test of N boxes | triangle test of N triangles } ─ Hit
 //! ```
 //!
+//! In the source, `build` makes trees, `layout` has what lies in memory, `precision` tests triangles,
+//! `trace` walks and has the kernels, `instances` places objects; each depends on those before it only.
+//!
 //! # Contracts
 //! - A closed mesh has no holes: edges and vertices belong to every triangle that shares them.
 //! - The answer is a function of the ray and the triangles alone: among hits at the same distance

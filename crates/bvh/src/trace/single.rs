@@ -90,7 +90,6 @@ where
 /// # Safety
 /// `start` must be the hierarchy's root or one of its nodes' children.
 #[inline(always)]
-#[expect(clippy::too_many_arguments)]
 pub(crate) unsafe fn search<S, const N: usize, const P: usize>(
     simd: S,
     precision: impl Precision,

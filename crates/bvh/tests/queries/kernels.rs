@@ -2,7 +2,6 @@
 //! for bit (I-01, I-02, I-04, I-14, B-04).
 
 use std::fmt::Debug;
-use std::ops::AddAssign;
 
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
@@ -14,13 +13,12 @@ use residual_bvh::{
 use crate::mesh::{Mesh, jittered_icosphere};
 use crate::oracle::{closest_hit_of_all, exact_closest_hit_of_all};
 use crate::runner::{Random, aimed, same};
+use crate::tally::{Counts, Tally, check};
 
 /// Rays that are traced as one stream: not a whole number of windows or packets.
 const BATCH: usize = if cfg!(miri) { 6 } else { 1000 };
 /// Of the mesh.
 const LEVELS: usize = if cfg!(miri) { 0 } else { 2 };
-
-const KERNELS: [&str; 4] = ["single", "packets", "hybrid", "one by one"];
 
 /// A closed mesh around `center`, in hierarchies of all widths, and each triangle alone.
 struct Scene {
@@ -93,40 +91,6 @@ struct Batch {
     fast: Vec<Hit>,
     watertight: Vec<Hit>,
     exact: Vec<Hit>,
-}
-
-/// What was found; `[kind of ray]` is random or aimed.
-#[derive(Clone, Copy, Default)]
-struct Tally {
-    /// For each precision.
-    precisions: [Counts; 3],
-}
-
-#[derive(Clone, Copy, Default)]
-struct Counts {
-    /// Rays, and those that must hit, and those of them that brute force misses.
-    rays: [usize; 2],
-    inside: [usize; 2],
-    misses: [usize; 2],
-    /// Answers of hierarchies, `[kernel][kind of ray]`, and those unlike brute force's.
-    answers: [[usize; 2]; KERNELS.len()],
-    disagreements: [[usize; 2]; KERNELS.len()],
-}
-
-impl AddAssign for Tally {
-    fn add_assign(&mut self, other: Tally) {
-        for (ours, theirs) in self.precisions.iter_mut().zip(other.precisions) {
-            for kind in 0..2 {
-                ours.rays[kind] += theirs.rays[kind];
-                ours.inside[kind] += theirs.inside[kind];
-                ours.misses[kind] += theirs.misses[kind];
-                for kernel in 0..KERNELS.len() {
-                    ours.answers[kernel][kind] += theirs.answers[kernel][kind];
-                    ours.disagreements[kernel][kind] += theirs.disagreements[kernel][kind];
-                }
-            }
-        }
-    }
 }
 
 /// A precision with its brute force.
@@ -373,51 +337,6 @@ fn trials(batches: usize) -> Tally {
         .into_par_iter()
         .map(|i| scenes[i % scenes.len()].trial(1000 + i as u64))
         .reduce(Tally::default, add)
-}
-
-fn report(tally: &Tally) {
-    for (name, counts) in ["Fast", "Watertight", "Exact"]
-        .iter()
-        .zip(&tally.precisions)
-    {
-        for (kind, rays) in ["random", "aimed"].iter().enumerate() {
-            println!(
-                "{name:10} {rays:6}: {} rays, {} from inside, of which {} miss",
-                counts.rays[kind], counts.inside[kind], counts.misses[kind],
-            );
-            for (kernel, name) in KERNELS.iter().enumerate() {
-                let (answers, disagreements) = (
-                    counts.answers[kernel][kind],
-                    counts.disagreements[kernel][kind],
-                );
-                if answers == 0 {
-                    continue;
-                }
-                println!(
-                    "    {name:8} {answers:12} answers, {disagreements} disagree{}",
-                    if disagreements == 0 {
-                        format!(" (less than {:.1e} at 95 %)", 3.0 / answers as f64)
-                    } else {
-                        format!(" ({:.2e})", disagreements as f64 / answers as f64)
-                    }
-                );
-            }
-        }
-    }
-}
-
-fn check(tally: &Tally) {
-    report(tally);
-    let [fast, watertight, exact] = &tally.precisions;
-    for counts in [watertight, exact] {
-        assert_eq!(counts.disagreements, [[0; 2]; KERNELS.len()]);
-        assert_eq!(counts.misses, [0; 2]);
-    }
-    for kernel in 0..KERNELS.len() {
-        assert_eq!(fast.disagreements[kernel][0], 0);
-        // None in five million answers was measured.
-        assert!(fast.disagreements[kernel][1] * 100_000 <= fast.answers[kernel][1]);
-    }
 }
 
 #[test]
