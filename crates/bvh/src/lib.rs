@@ -146,8 +146,8 @@
 //! Ray ─ prepared ray ─ traverse { slab test of N boxes | triangle test of N triangles } ─ Hit
 //! ```
 //!
-//! In the source, `build` makes trees, `layout` has what lies in memory, `precision` tests triangles,
-//! `trace` walks and has the kernels, `instances` places objects; each depends on those before it only.
+//! In the source, `layout` has what lies in memory, `build` makes trees, `precision` tests triangles,
+//! `trace` has the walk and the kernels, `instances` places objects. Each depends on some before it.
 //!
 //! # Contracts
 //! - A closed mesh has no holes: edges and vertices belong to every triangle that shares them.
