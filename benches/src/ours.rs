@@ -8,8 +8,8 @@ use std::fmt;
 use std::rc::Rc;
 
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Hit, Hybrid, Kernel as _, Packets, Ray, Scalar, Single, Watertight,
-    build,
+    AllHits, BuildQuality, Bvh, Hit, Hybrid, Kernel as _, OneByOne, Packets, Ray, Single,
+    Watertight, build,
 };
 
 use crate::contender::Stream;
@@ -136,10 +136,10 @@ pub fn variants() -> Vec<Variant> {
         Hybrid(Hybrid::<16>, 16): 16 x 16, Fast;
         Hybrid(Hybrid::<8>, 8): 8 x 8, Watertight;
         Hybrid(Hybrid::<16>, 16): 16 x 16, Watertight;
-        Scalar(Scalar, 1): 2 x 1, Fast;
-        Scalar(Scalar, 1): 4 x 4, Fast;
-        Scalar(Scalar, 1): 8 x 8, Fast;
-        Scalar(Scalar, 1): 16 x 16, Fast;
+        Scalar(OneByOne, 1): 2 x 1, Fast;
+        Scalar(OneByOne, 1): 4 x 4, Fast;
+        Scalar(OneByOne, 1): 8 x 8, Fast;
+        Scalar(OneByOne, 1): 16 x 16, Fast;
     ]
 }
 

@@ -100,14 +100,12 @@ fn primary(view: &View, [width, height]: [u32; 2]) -> Vec<Ray> {
     let ray = |(x, y): (u32, u32)| {
         let right = (2.0 * (x as f32 + 0.5) / width as f32 - 1.0) * tan * aspect;
         let up = (1.0 - 2.0 * (y as f32 + 0.5) / height as f32) * tan;
-        Ray {
-            org: view.eye.to_array(),
-            tmin: 0.0,
-            dir: (view.rotation * Vec3::new(right, up, -1.0))
+        Ray::unbounded(
+            view.eye.to_array(),
+            (view.rotation * Vec3::new(right, up, -1.0))
                 .normalize()
                 .to_array(),
-            tmax: f32::INFINITY,
-        }
+        )
     };
     pixels(width, height).map(ray).collect()
 }
@@ -178,12 +176,7 @@ fn missing(count: usize, scene: &Scene) -> Vec<Ray> {
             random(3 * index + 1),
             random(3 * index + 2),
         );
-        Ray {
-            org: org.to_array(),
-            tmin: 0.0,
-            dir: (dir + 0.1).normalize().to_array(),
-            tmax: f32::INFINITY,
-        }
+        Ray::unbounded(org.to_array(), (dir + 0.1).normalize().to_array())
     };
     (0..count).map(ray).collect()
 }

@@ -202,12 +202,7 @@ fn sees_fronts(eye: Vec3, mesh: &Mesh, reference: &Reference) -> bool {
         let radius = (1.0 - y * y).sqrt();
         [radius * cos, y, radius * sin]
     };
-    let ray = |i| Ray {
-        org: eye.to_array(),
-        tmin: 0.0,
-        dir: dir(i),
-        tmax: f32::INFINITY,
-    };
+    let ray = |i| Ray::unbounded(eye.to_array(), dir(i));
     let rays: Vec<Ray> = (0..COUNT).map(ray).collect();
     let is_front = |(ray, hit): &(&Ray, residual_bvh::Hit)| {
         hit.is_hit() && mesh.normal(hit.prim).dot(ray.dir.into()) < 0.0

@@ -85,12 +85,7 @@ fn camera_rays(width: usize, height: usize) -> Vec<Ray> {
     let ray = |index: usize| {
         let x = (index % width) as f32 / width as f32 * 2.0 - 1.0;
         let y = 1.0 - (index / width) as f32 / height as f32 * 2.0;
-        Ray {
-            org: [0.0, 0.0, 3.0],
-            tmin: 0.0,
-            dir: [0.5 * x, 0.5 * y, -1.0],
-            tmax: f32::INFINITY,
-        }
+        Ray::unbounded([0.0, 0.0, 3.0], [0.5 * x, 0.5 * y, -1.0])
     };
     (0..width * height).map(ray).collect()
 }
@@ -108,10 +103,11 @@ fn bounced_rays(rays: &[Ray], hits: &[Hit]) -> Vec<Ray> {
         .zip(hits)
         .filter(|(_, hit)| hit.is_hit())
         .map(|(ray, hit)| Ray {
-            org: [0, 1, 2].map(|axis| ray.org[axis] + hit.t * ray.dir[axis]),
             tmin: 1e-3,
-            dir: [random(), random(), random()],
-            tmax: f32::INFINITY,
+            ..Ray::unbounded(
+                [0, 1, 2].map(|axis| ray.org[axis] + hit.t * ray.dir[axis]),
+                [random(), random(), random()],
+            )
         })
         .collect()
 }

@@ -11,7 +11,7 @@
 //! let triangles = [[0, 1, 2], [0, 2, 3]];
 //! let bvh: Bvh<8> = build(&positions, &triangles, None, BuildQuality::Best);
 //!
-//! let down = |x, y| Ray { org: [x, y, 2.0], tmin: 0.0, dir: [0.0, 0.0, -1.0], tmax: f32::INFINITY };
+//! let down = |x, y| Ray::unbounded([x, y, 2.0], [0.0, 0.0, -1.0]);
 //! let hit = bvh.closest_hit(&down(0.25, 0.75));
 //! assert_eq!((hit.prim, hit.t), (1, 2.0));
 //! assert!(bvh.any_hit(&down(0.5, 0.5)) && !bvh.any_hit(&down(2.0, 0.5)));
@@ -69,7 +69,7 @@
 //!     })
 //!     .collect();
 //! let scene = InstancedBvh::new(vec![bvh], &instances)?;
-//! let ray = Ray { org: [0.0, 0.0, -7.0], tmin: 0.0, dir: [0.0, 0.0, -1.0], tmax: f32::INFINITY };
+//! let ray = Ray::unbounded([0.0, 0.0, -7.0], [0.0, 0.0, -1.0]);
 //! let hit = scene.closest_hit(&ray);
 //! assert_eq!((hit.instance, hit.hit.prim, hit.hit.t), (2, 0, 3.0));
 //! # Ok::<(), residual_bvh::InvalidInstance>(())
@@ -95,14 +95,14 @@
 //! ```
 //!
 //! # Layout
-//! Everything is aligned to cache lines of 64 bytes. One line of `Node<2>` holds both children.
+//! Everything is aligned to cache lines of 64 bytes. One line of `WideNode<2>` holds both children.
 //!
-//! | `N` | bytes of a [`Node`] | of a [`QuantizedNode`] | `P` | bytes of a [`TrianglePacket`] |
-//! |----:|--------------------:|----------------------:|----:|------------------------------:|
-//! |   2 |                  64 |                    64 |   1 |                            64 |
-//! |   4 |                 128 |                    64 |   4 |                           192 |
-//! |   8 |                 256 |                   128 |   8 |                           320 |
-//! |  16 |                 448 |                   192 |  16 |                           640 |
+//! | `N` | bytes of a [`WideNode`] | of a [`QuantizedNode`] | `P` | bytes of a [`TrianglePacket`] |
+//! |----:|------------------------:|-----------------------:|----:|------------------------------:|
+//! |   2 |                      64 |                     64 |   1 |                            64 |
+//! |   4 |                     128 |                     64 |   4 |                           192 |
+//! |   8 |                     256 |                    128 |   8 |                           320 |
+//! |  16 |                     448 |                    192 |  16 |                           640 |
 //!
 //! A [`QuantizedBvh`] is a [`Bvh`] with smaller nodes and the same answers.
 //!
@@ -146,6 +146,9 @@
 //! Ray ─ prepared ray ─ traverse { slab test of N boxes | triangle test of N triangles } ─ Hit
 //! ```
 //!
+//! In the source, `layout` has what lies in memory, `build` makes trees, `precision` tests triangles,
+//! `trace` has the walk and the kernels, `instances` places objects. Each depends on some before it.
+//!
 //! # Contracts
 //! - A closed mesh has no holes: edges and vertices belong to every triangle that shares them.
 //! - The answer is a function of the ray and the triangles alone: among hits at the same distance
@@ -175,7 +178,7 @@ pub use instances::instanced_bvh::InstancedBvh;
 pub use instances::query::{InstanceHit, any_instance_hit, closest_instance_hit};
 pub use layout::boxes::Boxes;
 pub use layout::bvh::{Bvh, BvhView};
-pub use layout::node::Node;
+pub use layout::node::WideNode;
 pub use layout::quantized::{QuantizedBvh, QuantizedNode};
 pub use layout::serial::LoadError;
 pub use layout::triangle_packet::TrianglePacket;
@@ -185,8 +188,8 @@ pub use precision::fast::Fast;
 pub use precision::triangle_test::Precision;
 pub use precision::watertight::Watertight;
 pub use ray::{Hit, Ray};
-pub use simd::Lanes;
+pub use simd::Width;
 pub use trace::cost::{TraversalCost, traversal_cost};
-pub use trace::scalar::Scalar;
+pub use trace::one_by_one::OneByOne;
 pub use trace::single::{any_hit, closest_hit};
 pub use trace::stream::{Hybrid, Kernel, Packets, Single};

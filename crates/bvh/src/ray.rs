@@ -22,6 +22,17 @@ pub struct Ray {
 const _: () = assert!(size_of::<Ray>() == 32 && offset_of!(Ray, dir) == 16);
 
 impl Ray {
+    /// The ray from `org` along `dir`, as far as it goes: its interval is `[0, ∞]`.
+    #[inline(always)]
+    pub const fn unbounded(org: [f32; 3], dir: [f32; 3]) -> Ray {
+        Ray {
+            org,
+            tmin: 0.0,
+            dir,
+            tmax: f32::INFINITY,
+        }
+    }
+
     /// Whether the ray can hit anything: finite origin and direction, a direction whose inverse is
     /// finite, and an interval that is not empty.
     #[inline(always)]

@@ -12,8 +12,8 @@ use fearless_simd::{f32x4, f32x8, f32x16, mask32x4, mask32x8, mask32x16, u8x16};
 /// or 16.
 ///
 /// Every fearless_simd token implements it at all widths, so a function generic in the width
-/// says `S: Lanes<N>` and needs no other bound. Widths 1 and 2 are arrays.
-pub trait Lanes<const N: usize>: fearless_simd::Simd {
+/// says `S: Width<N>` and needs no other bound. Widths 1 and 2 are arrays.
+pub trait Width<const N: usize>: fearless_simd::Simd {
     /// `N` floats.
     type Float: Copy;
     /// `N` truth values.
@@ -35,7 +35,7 @@ pub trait Lanes<const N: usize>: fearless_simd::Simd {
     fn mul(self, a: Self::Float, b: Self::Float) -> Self::Float;
     /// `a * b + c`, rounded once where the instruction set can, else twice.
     fn mul_add(self, a: Self::Float, b: Self::Float, c: Self::Float) -> Self::Float;
-    /// `a * b - c`, rounded as [`mul_add`](Lanes::mul_add).
+    /// `a * b - c`, rounded as [`mul_add`](Width::mul_add).
     fn mul_sub(self, a: Self::Float, b: Self::Float, c: Self::Float) -> Self::Float;
     /// `a / b`.
     fn div(self, a: Self::Float, b: Self::Float) -> Self::Float;
@@ -65,7 +65,7 @@ pub(crate) struct Stored<const N: usize>(pub(crate) [f32; N]);
 
 impl<const N: usize> Stored<N> {
     #[inline(always)]
-    pub(crate) fn of<S: Lanes<N>>(simd: S, lanes: S::Float) -> Self {
+    pub(crate) fn of<S: Width<N>>(simd: S, lanes: S::Float) -> Self {
         let mut stored = Stored([0.0; N]);
         simd.store(lanes, &mut stored.0);
         stored
@@ -80,7 +80,7 @@ const SECOND_OPERAND_WINS: bool = cfg!(any(target_arch = "x86", target_arch = "x
 
 macro_rules! implement_lanes {
     ($n:literal, $float:ident, $mask:ident, $bytes:ident) => {
-        impl<S: fearless_simd::Simd> Lanes<$n> for S {
+        impl<S: fearless_simd::Simd> Width<$n> for S {
             type Float = $float<S>;
             type Mask = $mask<S>;
 
@@ -201,7 +201,7 @@ implement_lanes!(16, f32x16, mask32x16, load_bytes_16);
 /// Too narrow for registers: arrays, left to the compiler.
 macro_rules! implement_narrow_lanes {
     ($n:literal) => {
-        impl<S: fearless_simd::Simd> Lanes<$n> for S {
+        impl<S: fearless_simd::Simd> Width<$n> for S {
             type Float = [f32; $n];
             type Mask = [bool; $n];
 

@@ -7,8 +7,8 @@
 
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, BvhView, Exact, Fast, Hit, Hybrid, Kernel, Lanes, Packets,
-    QuantizedBvh, Ray, Scalar, Single, Watertight, build,
+    AllHits, BuildQuality, Bvh, BvhView, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets,
+    QuantizedBvh, Ray, Single, Watertight, Width, build,
 };
 
 /// Squares behind each other, two triangles each.
@@ -25,12 +25,7 @@ fn squares() -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
 
 /// Towards the squares, one beside them, one that is no ray.
 fn rays() -> Vec<Ray> {
-    let ray = |x: f32, z: f32| Ray {
-        org: [x, 0.25, z],
-        tmin: 0.0,
-        dir: [0.01, 0.02, -1.0],
-        tmax: f32::INFINITY,
-    };
+    let ray = |x: f32, z: f32| Ray::unbounded([x, 0.25, z], [0.01, 0.02, -1.0]);
     let mut rays: Vec<Ray> = (0..6)
         .map(|i| ray(0.1 * i as f32, 0.5 - i as f32))
         .collect();
@@ -45,7 +40,7 @@ fn rays() -> Vec<Ray> {
 #[inline(always)]
 fn check<S, const N: usize, const P: usize>(simd: S, bvh: BvhView<'_, N, P>)
 where
-    S: Lanes<N> + Lanes<P> + Lanes<4>,
+    S: Width<N> + Width<P> + Width<4>,
 {
     let rays = rays();
     let mut expected = vec![Hit::miss(0.0); rays.len()];
@@ -58,7 +53,7 @@ where
     let mut hits = expected.clone();
     Packets::<4>.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
     assert_eq!(hits, expected);
-    Scalar.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
+    OneByOne.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
     assert_eq!(hits, expected);
     Hybrid::<4>.closest_hits(simd, Exact, bvh, &rays, &mut hits, &AllHits);
     assert!(hits.iter().zip(&expected).all(|(a, b)| a.prim == b.prim));

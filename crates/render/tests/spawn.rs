@@ -11,12 +11,7 @@ use crate::support::scenes::{Triangle, scene};
 use crate::support::{array, cross, dot, unit};
 
 fn ray(org: [f32; 3], dir: [f32; 3]) -> Ray {
-    Ray {
-        org,
-        tmin: 0.0,
-        dir,
-        tmax: f32::MAX,
-    }
+    Ray::unbounded(org, dir)
 }
 
 fn hits(bvh: &Bvh<4>, ray: &Ray) -> bool {

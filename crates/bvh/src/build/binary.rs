@@ -10,7 +10,7 @@ pub(crate) enum BinaryNode {
     Inner(u32, u32),
 }
 
-/// Nodes in preorder, over references numbered from left to right; without references there are no
+/// Nodes in preorder, whose references have ascending indices from left to right; without references there are no
 /// nodes.
 pub(crate) struct BinaryTree {
     pub(crate) nodes: Vec<BinaryNode>,
@@ -27,7 +27,7 @@ impl BinaryTree {
         }
     }
 
-    /// A value for each node, from the number of its reference or from both children's values.
+    /// A value for each node, from the index of its reference or from both children's values.
     pub(crate) fn bottom_up<T: Copy + Default>(
         &self,
         leaf: impl Fn(u32) -> T,

@@ -20,7 +20,7 @@ pub(crate) const CHUNK: usize = 1 << 14;
 /// Up to so many fragments are sorted instead of binned.
 pub(crate) const MAX_SORTED: usize = 16;
 
-/// Places points in equal bins on each axis.
+/// Equal bins on each axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid {
     origin: Vec3A,
@@ -48,7 +48,7 @@ impl Grid {
 
     /// The point's bin on each axis: a monotone function of the coordinate.
     #[inline(always)]
-    pub(crate) fn place(&self, point: Vec3A) -> [usize; 3] {
+    pub(crate) fn bins_of(&self, point: Vec3A) -> [usize; 3] {
         // Adding 2²³ rounds to an integer and leaves it in the low bits.
         const ROUND: f32 = (1 << 23) as f32;
         let bin = (point - self.origin) * self.scale - Vec3A::splat(0.5);
@@ -61,8 +61,8 @@ impl Grid {
     /// The fragment's bin by its centre on each axis, and by its area relative to the node's: two
     /// bins an octave, from the largest on.
     #[inline(always)]
-    pub(crate) fn place_object(&self, fragment: &Fragment) -> [usize; AXES] {
-        let [x, y, z] = self.place(fragment.center());
+    pub(crate) fn object_bins(&self, fragment: &Fragment) -> [usize; AXES] {
+        let [x, y, z] = self.bins_of(fragment.center());
         let smaller = self
             .area
             .saturating_sub(fragment.bounds().half_area().to_bits());
@@ -189,8 +189,8 @@ pub(crate) fn object_grid(summary: &Summary) -> Grid {
 /// The best division at a plane between bins of centres.
 pub(crate) fn best_object_split(fragments: &[Fragment], grid: &Grid) -> Option<Candidate> {
     let mut bins = in_chunks(fragments, grid.bins, |bins, fragment| {
-        let (bounds, places) = (fragment.bounds(), grid.place_object(fragment));
-        for (axis, bin) in places.into_iter().enumerate() {
+        let (bounds, chosen) = (fragment.bounds(), grid.object_bins(fragment));
+        for (axis, bin) in chosen.into_iter().enumerate() {
             bins.bounds[axis][bin].grow(bounds.lo, bounds.hi);
             bins.starts[axis][bin] += 1;
         }
@@ -266,13 +266,13 @@ fn sorted(count: usize, key: impl Fn(usize) -> f32) -> [u8; MAX_SORTED] {
     let (mut keys, mut order) = ([0.0; MAX_SORTED], [0; MAX_SORTED]);
     for i in 0..count {
         let key = key(i);
-        let mut place = i;
-        while place > 0 && keys[place - 1] > key {
-            keys[place] = keys[place - 1];
-            order[place] = order[place - 1];
-            place -= 1;
+        let mut index = i;
+        while index > 0 && keys[index - 1] > key {
+            keys[index] = keys[index - 1];
+            order[index] = order[index - 1];
+            index -= 1;
         }
-        (keys[place], order[place]) = (key, i as u8);
+        (keys[index], order[index]) = (key, i as u8);
     }
     order
 }

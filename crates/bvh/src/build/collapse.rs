@@ -17,7 +17,7 @@ use crate::build::mesh::Mesh;
 use crate::build::reference::Reference;
 use crate::layout::bvh::Bvh;
 use crate::layout::child::Child;
-use crate::layout::node::Node;
+use crate::layout::node::WideNode;
 use crate::layout::triangle_packet::{SINGLE_SIDED, TrianglePacket};
 use crate::layout::validate::check_structure;
 
@@ -67,7 +67,7 @@ pub(crate) fn collapse<const N: usize, const P: usize>(
     mesh: &Mesh<'_>,
 ) -> Bvh<N, P> {
     let mut bvh = Bvh {
-        nodes: vec![Node::VACANT],
+        nodes: vec![WideNode::VACANT],
         packets: Vec::new(),
         sah_cost: 0.0,
     };
@@ -91,7 +91,7 @@ pub(crate) fn collapse<const N: usize, const P: usize>(
     let mut pending = vec![(0u32, 0usize)];
     let mut cost = 0.0f64;
     while let Some((source, target)) = pending.pop() {
-        let mut wide = Node::VACANT;
+        let mut wide = WideNode::VACANT;
         cost += f64::from(area(source));
         let (mut slots, used) = slots_of(tree, &plans, source);
         // Any-hit queries take children in their order. They gain most by starting with those of
@@ -107,7 +107,7 @@ pub(crate) fn collapse<const N: usize, const P: usize>(
                 cost += f64::from(tests * area(child));
                 leaf
             } else {
-                bvh.nodes.push(Node::VACANT);
+                bvh.nodes.push(WideNode::VACANT);
                 pending.push((child, bvh.nodes.len() - 1));
                 Child::node(bvh.nodes.len() - 1)
             };
@@ -246,8 +246,8 @@ fn bounds_of(references: &[Reference]) -> Bounds {
         .reduce(|| Bounds::EMPTY, |a, b| a.union(&b))
 }
 
-/// The binary nodes that become the children of the wide node made from `node`, and their number. Only a root that
-/// holds everything in one leaf has itself as its child.
+/// The binary nodes that become the children of the wide node made from `node`, and how many they are.
+/// Only a root that holds everything in one leaf has itself as its child.
 fn slots_of<const N: usize>(tree: &BinaryTree, plans: &[Plan<N>], node: u32) -> ([u32; N], usize) {
     let (mut slots, mut used) = ([node; N], 0);
     let share = plans[node as usize].left_slots as usize;

@@ -18,17 +18,17 @@ pub(crate) enum Placement {
 pub(crate) fn partition(
     slots: &mut [Fragment],
     count: usize,
-    place: impl Fn(&Fragment) -> Placement + Sync,
+    placement: impl Fn(&Fragment) -> Placement + Sync,
 ) -> (Summary, Summary) {
     if count > 2 * CHUNK {
-        return partition_chunks(slots, count, place);
+        return partition_chunks(slots, count, placement);
     }
     let (mut left, mut right) = (Summary::EMPTY, Summary::EMPTY);
     // Left fragments, fragments not yet seen, right fragments.
     let (mut next, mut unseen, mut end) = (0, count, count);
     while next < unseen {
         let fragment = slots[next];
-        match place(&fragment) {
+        match placement(&fragment) {
             Placement::Left => {
                 left.add(&fragment);
                 next += 1;
@@ -62,14 +62,14 @@ pub(crate) fn make_room(slots: &mut [Fragment], left: &Summary, right: &Summary)
 fn partition_chunks(
     slots: &mut [Fragment],
     count: usize,
-    place: impl Fn(&Fragment) -> Placement + Sync,
+    placement: impl Fn(&Fragment) -> Placement + Sync,
 ) -> (Summary, Summary) {
     let parts: Vec<_> = slots[..count]
         .par_chunks(CHUNK)
         .map(|fragments| {
             let mut sides = [Vec::with_capacity(CHUNK), Vec::with_capacity(CHUNK)];
             for fragment in fragments {
-                match place(fragment) {
+                match placement(fragment) {
                     Placement::Left => sides[0].push(*fragment),
                     Placement::Right => sides[1].push(*fragment),
                     Placement::Both(below, above) => {

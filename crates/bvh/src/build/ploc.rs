@@ -45,10 +45,10 @@ pub(crate) fn build_tree(mesh: &Mesh<'_>, prims: &[u32]) -> (BinaryTree, Vec<Ref
 
     let mut nodes = Vec::with_capacity(2 * references.len());
     let mut ordered = Vec::with_capacity(references.len());
-    let mut pending = vec![(Source::Node(0), None)];
+    let mut pending = vec![(Source::WideNode(0), None)];
     while let Some((source, parent)) = pending.pop() {
         let source = match source {
-            Source::Node(index) if bvh2.nodes[index as usize].is_leaf() => {
+            Source::WideNode(index) if bvh2.nodes[index as usize].is_leaf() => {
                 let first = bvh2.nodes[index as usize].first_index as usize;
                 Source::Group(groups[bvh2.primitive_indices[first] as usize].clone())
             }
@@ -65,9 +65,9 @@ pub(crate) fn build_tree(mesh: &Mesh<'_>, prims: &[u32]) -> (BinaryTree, Vec<Ref
                 let middle = start.midpoint(end);
                 (Source::Group(start..middle), Source::Group(middle..end))
             }
-            Source::Node(index) => {
+            Source::WideNode(index) => {
                 let first = bvh2.nodes[index as usize].first_index;
-                (Source::Node(first), Source::Node(first + 1))
+                (Source::WideNode(first), Source::WideNode(first + 1))
             }
         };
         pending.push((right, Some(index)));
@@ -79,7 +79,7 @@ pub(crate) fn build_tree(mesh: &Mesh<'_>, prims: &[u32]) -> (BinaryTree, Vec<Ref
 /// Where a node of the binary tree comes from.
 enum Source {
     /// A node of obvhs' tree.
-    Node(u32),
+    WideNode(u32),
     /// References with equal boxes, a range of their order.
     Group(Range<usize>),
 }

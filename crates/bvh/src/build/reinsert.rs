@@ -99,8 +99,8 @@ struct LinkedTree {
 }
 
 /// Improves the tree: each round tries to move a `share` of the nodes, those of the largest boxes.
-/// Up to `packet` references that make a good leaf move together. The references are numbered
-/// anew, from left to right.
+/// Up to `packet` references that make a good leaf move together. The references get
+/// new indices, ascending from left to right.
 pub(crate) fn reinsert(
     tree: BinaryTree,
     references: Vec<Reference>,

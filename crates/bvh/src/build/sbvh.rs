@@ -18,7 +18,7 @@ use crate::build::fragment::{Box3, Fragment, Summary};
 use crate::build::mesh::Mesh;
 use crate::build::partition::{Placement, make_room, partition};
 use crate::build::reference::Reference;
-use crate::build::spatial::{best_spatial_split, place, spatial_grid};
+use crate::build::spatial::{best_spatial_split, placement, spatial_grid};
 use crate::layout::validate::MAX_DEPTH;
 
 /// Slots of the largest subtree built as one task.
@@ -47,7 +47,7 @@ struct Builder<'a> {
     report: &'a (dyn Fn(f32) + Sync),
 }
 
-/// A subtree in preorder whose references are numbered from left to right.
+/// A subtree in preorder whose references have ascending indices from left to right.
 enum Subtree {
     Inner(Box<(Subtree, Subtree)>),
     Chunk(BinaryTree, Vec<Fragment>),
@@ -115,7 +115,7 @@ pub(crate) fn build_tree(
     };
     let subtree = builder.subtree(&mut slots, &summary, 0);
     drop(slots);
-    flatten(subtree, mesh, guide.is_exact())
+    flatten(subtree, mesh, &guide)
 }
 
 /// How much a triangle gains by being split: what the half area of its box exceeds that of a box
@@ -198,7 +198,7 @@ impl Builder<'_> {
                 let limit = object.map_or(f32::INFINITY, |split| split.cost);
                 if let Some(split) = spatial.filter(|split| split.cost < limit) {
                     let (left, right) = partition(slots, count, |fragment| {
-                        place(&self.mesh, &grid, &split, fragment)
+                        placement(&self.mesh, &grid, &split, fragment)
                     });
                     if left.count > 0 && right.count > 0 {
                         return (left, right);
@@ -208,7 +208,7 @@ impl Builder<'_> {
         }
         match object {
             Some(split) => partition(slots, count, |fragment| {
-                if grid.place_object(fragment)[split.axis] < split.bin {
+                if grid.object_bins(fragment)[split.axis] < split.bin {
                     Placement::Left
                 } else {
                     Placement::Right
@@ -232,13 +232,13 @@ fn divide(slots: &mut [Fragment], count: usize, middle: usize) -> (Summary, Summ
 }
 
 /// The subtrees one after another.
-fn flatten(subtree: Subtree, mesh: &Mesh<'_>, exact: bool) -> (BinaryTree, Vec<Reference>) {
+fn flatten(subtree: Subtree, mesh: &Mesh<'_>, guide: &Guide) -> (BinaryTree, Vec<Reference>) {
     let mut nodes = Vec::new();
     let mut fragments = Vec::new();
     append_subtree(subtree, &mut nodes, &mut fragments);
     let references = fragments
         .par_iter()
-        .map(|fragment| reference(fragment, mesh, exact))
+        .map(|fragment| reference(fragment, mesh, guide))
         .collect();
     (BinaryTree { nodes }, references)
 }
@@ -266,12 +266,12 @@ fn append_subtree(subtree: Subtree, nodes: &mut Vec<BinaryNode>, fragments: &mut
 
 /// The padded box. A part is padded twice as much, for its clipping may have rounded, but not
 /// beyond the box of the whole triangle.
-fn reference(fragment: &Fragment, mesh: &Mesh<'_>, exact: bool) -> Reference {
+fn reference(fragment: &Fragment, mesh: &Mesh<'_>, guide: &Guide) -> Reference {
     let prim = fragment.prim();
     let whole = Bounds::of_triangle(&mesh.vertices(prim));
     let extent = whole.extent();
     let mut bounds = whole.padded(extent);
-    if exact {
+    if guide.is_exact() {
         let part = fragment.bounds();
         let part = Bounds {
             lo: part.lo.into(),

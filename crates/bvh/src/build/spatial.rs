@@ -19,11 +19,11 @@ pub(crate) fn spatial_grid(summary: &Summary) -> Grid {
 #[inline(always)]
 fn span(grid: &Grid, fragment: &Fragment) -> ([usize; 3], [usize; 3]) {
     if fragment.credits() == 0 {
-        let places = grid.place(fragment.center() * 0.5);
-        (places, places)
+        let bins = grid.bins_of(fragment.center() * 0.5);
+        (bins, bins)
     } else {
         let bounds = fragment.bounds();
-        (grid.place(bounds.lo), grid.place(bounds.hi))
+        (grid.bins_of(bounds.lo), grid.bins_of(bounds.hi))
     }
 }
 
@@ -66,7 +66,7 @@ pub(crate) fn best_spatial_split(
 }
 
 /// Where a fragment goes at the split.
-pub(crate) fn place(
+pub(crate) fn placement(
     mesh: &Mesh<'_>,
     grid: &Grid,
     split: &Candidate,

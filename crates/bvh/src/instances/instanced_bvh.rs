@@ -5,7 +5,7 @@ use crate::instances::instance::{Instance, InvalidInstance};
 use crate::instances::placed::{Placed, place};
 use crate::instances::top_level::build_top_level;
 use crate::layout::bvh::Bvh;
-use crate::layout::node::Node;
+use crate::layout::node::WideNode;
 use crate::layout::validate::check_nodes;
 
 /// Hierarchies of objects, and a hierarchy over their instances.
@@ -13,7 +13,7 @@ use crate::layout::validate::check_nodes;
 pub struct InstancedBvh<const N: usize, const P: usize = N> {
     pub(crate) objects: Vec<Bvh<N, P>>,
     /// Leaves name ranges of `placed`.
-    pub(crate) nodes: Vec<Node<N>>,
+    pub(crate) nodes: Vec<WideNode<N>>,
     pub(crate) placed: Vec<Placed>,
 }
 

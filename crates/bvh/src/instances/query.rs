@@ -1,5 +1,6 @@
 //! Queries of two-level hierarchies.
 
+use std::mem::{offset_of, size_of};
 use std::ops::ControlFlow;
 
 use crate::filter::HitFilter;
@@ -8,7 +9,8 @@ use crate::instances::placed::Placed;
 use crate::layout::child::Child;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
+use crate::simd::Width;
+use crate::trace::goal::{AnyHit, ClosestHit, Goal};
 use crate::trace::single::search;
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
@@ -23,6 +25,8 @@ pub struct InstanceHit {
     /// Index of the instance; [`Hit::NONE`] on a miss.
     pub instance: u32,
 }
+
+const _: () = assert!(size_of::<InstanceHit>() == 20 && offset_of!(InstanceHit, instance) == 16);
 
 impl InstanceHit {
     /// The answer for a ray that meets nothing up to `tmax`.
@@ -54,9 +58,9 @@ pub fn closest_instance_hit<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> InstanceHit
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
-    query::<S, N, P, _, _, false>(simd, precision, bvh, ray, filter)
+    query(simd, precision, bvh, ray, filter, ClosestHit)
 }
 
 /// Whether there is a hit with an instance in the ray's interval that `filter` accepts: exactly
@@ -70,33 +74,35 @@ pub fn any_instance_hit<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> bool
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
-    query::<S, N, P, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
+    query(simd, precision, bvh, ray, filter, AnyHit).is_hit()
 }
 
 #[inline(always)]
-fn query<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>(
+fn query<S, const N: usize, const P: usize>(
     simd: S,
-    precision: Pr,
+    precision: impl Precision,
     bvh: &InstancedBvh<N, P>,
     ray: &Ray,
-    filter: &F,
+    filter: &impl HitFilter,
+    goal: impl Goal,
 ) -> InstanceHit
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     if !ray.is_valid() {
         return InstanceHit::miss(ray.tmax);
     }
     let (tmin, tmax) = ray.interval();
-    let mut search = InstanceSearch::<S, N, P, Pr, F, ANY> {
+    let mut search = InstanceSearch {
         simd,
         precision,
         bvh,
         ray,
         tmin,
         filter,
+        goal,
         best: InstanceHit::miss(tmax),
     };
     let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
@@ -110,22 +116,23 @@ where
 }
 
 /// The search for one ray's hit among the instances.
-struct InstanceSearch<'a, S, const N: usize, const P: usize, Pr, F, const ANY: bool> {
+struct InstanceSearch<'a, S, const N: usize, const P: usize, Pr, F, G> {
     simd: S,
     precision: Pr,
     bvh: &'a InstancedBvh<N, P>,
     ray: &'a Ray,
     tmin: f32,
     filter: &'a F,
+    goal: G,
     best: InstanceHit,
 }
 
-impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
-    for InstanceSearch<'_, S, N, P, Pr, F, ANY>
+impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
+    for InstanceSearch<'_, S, N, P, Pr, F, G>
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
-    const ANY: bool = ANY;
+    type Goal = G;
     type Item = Placed;
 
     #[inline(always)]
@@ -150,7 +157,7 @@ where
             }
             // SAFETY: the root is there.
             let mut hit = unsafe {
-                search::<S, N, P, Pr, F, _, ANY>(
+                search(
                     self.simd,
                     self.precision,
                     self.bvh.objects[placed.bvh as usize].view(),
@@ -158,6 +165,7 @@ where
                     &object_ray,
                     self.tmin,
                     self.filter,
+                    self.goal,
                     Hit::miss(self.best.hit.t),
                 )
             };
@@ -168,9 +176,7 @@ where
             let instance = placed.instance;
             if (hit.t, instance) < (self.best.hit.t, self.best.instance) {
                 self.best = InstanceHit { hit, instance };
-                if ANY {
-                    return ControlFlow::Break(());
-                }
+                self.goal.found()?;
             }
         }
         ControlFlow::Continue(())

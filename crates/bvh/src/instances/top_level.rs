@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::bounds::Bounds;
 use crate::layout::child::Child;
-use crate::layout::node::Node;
+use crate::layout::node::WideNode;
 use crate::layout::validate::MAX_DEPTH;
 
 /// Instances in the largest leaf. A leaf tests each box again before it transforms the ray.
@@ -20,7 +20,26 @@ const BINS: usize = 32;
 const FIRST_HALVED_LEVEL: usize = 34;
 const _: () = assert!(FIRST_HALVED_LEVEL + 27 < MAX_DEPTH && MAX_LEAF <= Child::MAX_PACKETS);
 
-/// A box, and its number among those given.
+/// How ranges are divided.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Rule {
+    /// The greatest box first, where the surface area heuristic says.
+    LeastCost,
+    /// The longest range first, at its median.
+    Halves,
+}
+
+impl Rule {
+    fn at(level: usize) -> Rule {
+        if level < FIRST_HALVED_LEVEL {
+            Rule::LeastCost
+        } else {
+            Rule::Halves
+        }
+    }
+}
+
+/// A box, and its index among those given.
 #[derive(Clone, Copy)]
 struct Item {
     bounds: Bounds,
@@ -35,24 +54,24 @@ impl Item {
     }
 }
 
-/// Nodes over the boxes, none of which is empty or NaN, parents first; and the boxes' numbers in
+/// Nodes over the boxes, none of which is empty or NaN, parents first; and the boxes' indices in
 /// the order in which the leaves name them.
-pub(crate) fn build_top_level<const N: usize>(boxes: &[Bounds]) -> (Vec<Node<N>>, Vec<u32>) {
+pub(crate) fn build_top_level<const N: usize>(boxes: &[Bounds]) -> (Vec<WideNode<N>>, Vec<u32>) {
     let mut items: Vec<Item> = boxes
         .iter()
         .zip(0..)
         .map(|(&bounds, index)| Item { bounds, index })
         .collect();
-    let mut nodes = vec![Node::VACANT];
+    let mut nodes = vec![WideNode::VACANT];
     // Nodes yet to fill: (node, what is below, level).
     let mut pending = vec![(0, 0..items.len(), 1)];
     while let Some((target, range, level)) = pending.pop() {
-        let parts = divide::<N>(&mut items, range, level >= FIRST_HALVED_LEVEL);
+        let parts = divide::<N>(&mut items, range, Rule::at(level));
         for (slot, (part, bounds)) in parts.into_iter().enumerate() {
             let child = if part.len() <= MAX_LEAF {
                 Child::leaf(part.start, part.len())
             } else {
-                nodes.push(Node::VACANT);
+                nodes.push(WideNode::VACANT);
                 pending.push((nodes.len() - 1, part, level + 1));
                 Child::node(nodes.len() - 1)
             };
@@ -66,7 +85,7 @@ pub(crate) fn build_top_level<const N: usize>(boxes: &[Bounds]) -> (Vec<Node<N>>
 fn divide<const N: usize>(
     items: &mut [Item],
     range: Range<usize>,
-    halve: bool,
+    rule: Rule,
 ) -> Vec<(Range<usize>, Bounds)> {
     if range.is_empty() {
         return Vec::new();
@@ -74,19 +93,16 @@ fn divide<const N: usize>(
     let bounds = bounds_of(&items[range.clone()]);
     let mut parts = vec![(range, bounds)];
     while parts.len() < N {
-        let size = |(part, bounds): &(Range<usize>, Bounds)| {
-            if halve {
-                part.len() as f64
-            } else {
-                bounds.half_area()
-            }
+        let size = |(part, bounds): &(Range<usize>, Bounds)| match rule {
+            Rule::LeastCost => bounds.half_area(),
+            Rule::Halves => part.len() as f64,
         };
         let next = (0..parts.len())
             .filter(|&part| parts[part].0.len() > MAX_LEAF)
             .max_by(|&a, &b| size(&parts[a]).total_cmp(&size(&parts[b])));
         let Some(next) = next else { break };
         let part = parts[next].0.clone();
-        let middle = part.start + split(&mut items[part.clone()], halve);
+        let middle = part.start + split(&mut items[part.clone()], rule);
         let [left, right] = [part.start..middle, middle..part.end];
         parts[next] = (left.clone(), bounds_of(&items[left]));
         parts.push((right.clone(), bounds_of(&items[right])));
@@ -101,7 +117,7 @@ fn bounds_of(items: &[Item]) -> Bounds {
 }
 
 /// Rearranges the items, two at least, and returns how many go to the left: not none, not all.
-fn split(items: &mut [Item], halve: bool) -> usize {
+fn split(items: &mut [Item], rule: Rule) -> usize {
     let axes = [0, 1, 2].map(|axis| {
         let range = items
             .iter()
@@ -117,7 +133,7 @@ fn split(items: &mut [Item], halve: bool) -> usize {
     });
     let best = axes
         .iter()
-        .filter(|axis| axis.extent > 0.0 && !halve)
+        .filter(|axis| axis.extent > 0.0 && rule == Rule::LeastCost)
         .map(|axis| (axis.cheapest_split(items), axis))
         .min_by(|(a, _), (b, _)| a.cost.total_cmp(&b.cost));
     if let Some((cut, axis)) = best {
@@ -160,8 +176,8 @@ struct Cut {
 impl Axis {
     /// The first centre falls into the first bin and the last into the last.
     fn bin(&self, item: &Item) -> usize {
-        let place = (item.center(self.axis) - self.lo) / self.extent;
-        ((place * BINS as f64) as usize).min(BINS - 1)
+        let fraction = (item.center(self.axis) - self.lo) / self.extent;
+        ((fraction * BINS as f64) as usize).min(BINS - 1)
     }
 
     /// For an extent greater than zero.

@@ -1,17 +1,24 @@
 //! What the kernels read of a node: `N` boxes and what they hold, stored as they are
-//! ([`crate::Node`]) or in fewer bits ([`crate::QuantizedNode`]).
+//! ([`crate::WideNode`]) or in fewer bits ([`crate::QuantizedNode`]).
 
 use std::fmt::Debug;
 
 use crate::bounds::Bounds;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
-/// A layout of nodes that the kernels can traverse: [`Node`](crate::Node) and
+/// A layout of nodes that the kernels can traverse: [`WideNode`](crate::WideNode) and
 /// [`QuantizedNode`](crate::QuantizedNode), and nothing else.
 ///
-/// Planes are numbered as the rows of [`Node::bounds`](crate::Node::bounds): `2 * axis`, and one more for the upper.
-pub trait Boxes<const N: usize>: sealed::Sealed + Copy + Debug + Send + Sync {
-    /// What each box holds, as in [`Node::children`](crate::Node::children).
+/// Planes have the indices of the rows of [`WideNode::bounds`](crate::WideNode::bounds): `2 * axis`,
+/// and one more for the upper.
+///
+/// # Safety
+/// [`children`](Boxes::children) must give the same array each time: what [`BvhView::new`] has found
+/// sound is traversed without further checks.
+///
+/// [`BvhView::new`]: crate::BvhView::new
+pub unsafe trait Boxes<const N: usize>: sealed::Sealed + Copy + Debug + Send + Sync {
+    /// What each box holds, as in [`WideNode::children`](crate::WideNode::children).
     fn children(&self) -> &[u32; N];
 
     /// The slots that hold anything, as bits; more may be set where the box alone keeps rays out.
@@ -21,9 +28,9 @@ pub trait Boxes<const N: usize>: sealed::Sealed + Copy + Debug + Send + Sync {
     ///
     /// # Safety
     /// `row` must be one of the two of this axis.
-    unsafe fn plane<S: Lanes<N>>(&self, simd: S, axis: usize, row: usize) -> S::Float;
+    unsafe fn plane<S: Width<N>>(&self, simd: S, axis: usize, row: usize) -> S::Float;
 
-    /// The same number for one box. `row` is of this axis.
+    /// The same plane of one box. `row` is of this axis.
     fn plane_of(&self, slot: usize, axis: usize, row: usize) -> f32;
 
     /// One box; empty in an unused slot.
@@ -31,6 +38,6 @@ pub trait Boxes<const N: usize>: sealed::Sealed + Copy + Debug + Send + Sync {
 }
 
 pub(crate) mod sealed {
-    /// Soundness rests on children that do not change between check and use.
+    /// Keeps other layouts out.
     pub trait Sealed {}
 }

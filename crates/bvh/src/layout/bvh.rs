@@ -2,7 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::layout::boxes::Boxes;
-use crate::layout::node::Node;
+use crate::layout::node::WideNode;
 use crate::layout::triangle_packet::TrianglePacket;
 use crate::layout::validate::{InvalidBvh, check_structure};
 
@@ -10,7 +10,7 @@ use crate::layout::validate::{InvalidBvh, check_structure};
 /// packet (1, 4, 8 or 16).
 #[derive(Clone, Debug)]
 pub struct Bvh<const N: usize, const P: usize = N> {
-    pub(crate) nodes: Vec<Node<N>>,
+    pub(crate) nodes: Vec<WideNode<N>>,
     pub(crate) packets: Vec<TrianglePacket<P>>,
     pub(crate) sah_cost: f32,
 }
@@ -26,7 +26,7 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
     }
 
     /// The nodes, the root first, parents before their children.
-    pub fn nodes(&self) -> &[Node<N>] {
+    pub fn nodes(&self) -> &[WideNode<N>] {
         &self.nodes
     }
 
@@ -57,7 +57,7 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
 
 /// A hierarchy whose structure is known to be sound, wherever its bytes came from.
 #[derive(Clone, Copy, Debug)]
-pub struct BvhView<'a, const N: usize, const P: usize = N, B = Node<N>> {
+pub struct BvhView<'a, const N: usize, const P: usize = N, B = WideNode<N>> {
     nodes: &'a [B],
     packets: &'a [TrianglePacket<P>],
 }

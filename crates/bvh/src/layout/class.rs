@@ -44,7 +44,7 @@ pub(crate) struct Class {
 }
 
 impl Class {
-    /// The number of the class of invalid rays, the greatest.
+    /// The index of the class of invalid rays, the greatest.
     pub(crate) const INVALID: usize = 24;
 
     #[inline(always)]
@@ -56,12 +56,12 @@ impl Class {
     }
 
     #[inline(always)]
-    pub(crate) fn number(ray: &Ray) -> usize {
+    pub(crate) fn index(ray: &Ray) -> usize {
         let Class { octant, axes } = Class::of(ray);
         let octant = octant.map(usize::from);
-        let number = 8 * axes[2] + 4 * octant[2] + 2 * octant[1] + octant[0];
+        let index = 8 * axes[2] + 4 * octant[2] + 2 * octant[1] + octant[0];
         if ray.is_valid() {
-            number
+            index
         } else {
             Class::INVALID
         }

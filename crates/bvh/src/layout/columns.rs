@@ -1,9 +1,8 @@
 //! A packet of rays in columns, as vector lanes want them.
 
 use crate::layout::class::{Class, ordered};
-use crate::ray::Ray;
-use crate::ray::interval;
-use crate::simd::Lanes;
+use crate::ray::{Ray, interval};
+use crate::simd::Width;
 
 /// `R` rays.
 #[derive(Clone, Copy)]
@@ -18,7 +17,7 @@ pub(crate) struct Columns<const R: usize> {
 }
 
 impl<const R: usize> Columns<R> {
-    /// The rays that `members` number. What room is left repeats the first.
+    /// The rays whose indices are `members`. What room is left repeats the first.
     #[inline(always)]
     pub(crate) fn gather(rays: &[Ray], members: &[u16]) -> Columns<R> {
         let mut columns = Columns {
@@ -42,7 +41,7 @@ impl<const R: usize> Columns<R> {
 
     /// The class of all rays, if they are valid and have one.
     #[inline(always)]
-    pub(crate) fn class<S: Lanes<R>>(&self, simd: S) -> Option<Class> {
+    pub(crate) fn class<S: Width<R>>(&self, simd: S) -> Option<Class> {
         let all = u32::MAX >> (32 - R);
         let uniform = |lanes: u32| (lanes == 0 || lanes == all).then_some(lanes != 0);
 

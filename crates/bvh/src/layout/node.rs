@@ -6,16 +6,16 @@ use crate::bounds::Bounds;
 use crate::layout::boxes::Boxes;
 use crate::layout::boxes::sealed::Sealed;
 use crate::layout::child::Child;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 /// `N` child boxes and what they hold.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub struct Node<const N: usize> {
+pub struct WideNode<const N: usize> {
     /// `[lo.x, hi.x, lo.y, hi.y, lo.z, hi.z]`, each `[child]`; an unused slot has the empty box.
     pub bounds: [[f32; N]; 6],
-    /// What each box holds: the number of a node; or, with the high bit set, a leaf of (bits 27 to 30) packets from the
-    /// packet (lower 27 bits) on. A leaf of no packets is an unused slot.
+    /// What each box holds: the index of a node; or, with the high bit set, a leaf: bits 27 to 30 are the
+    /// count of its packets, the lower 27 bits the index of the first. A leaf of no packets is an unused slot.
     pub children: [u32; N],
 }
 
@@ -23,9 +23,9 @@ pub struct Node<const N: usize> {
 macro_rules! assert_layout {
     ($n:literal: $size:literal, children at $offset:literal) => {
         const _: () = assert!(
-            size_of::<Node<$n>>() == $size
-                && align_of::<Node<$n>>() == 64
-                && offset_of!(Node<$n>, children) == $offset
+            size_of::<WideNode<$n>>() == $size
+                && align_of::<WideNode<$n>>() == 64
+                && offset_of!(WideNode<$n>, children) == $offset
         );
     };
 }
@@ -33,9 +33,9 @@ assert_layout!(2: 64, children at 48);
 assert_layout!(4: 128, children at 96);
 assert_layout!(8: 256, children at 192);
 assert_layout!(16: 448, children at 384);
-impl<const N: usize> Node<N> {
+impl<const N: usize> WideNode<N> {
     /// A node without children.
-    pub(crate) const VACANT: Node<N> = Node {
+    pub(crate) const VACANT: WideNode<N> = WideNode {
         bounds: [
             [f32::INFINITY; N],
             [f32::NEG_INFINITY; N],
@@ -64,9 +64,10 @@ impl<const N: usize> Node<N> {
     }
 }
 
-impl<const N: usize> Sealed for Node<N> {}
+impl<const N: usize> Sealed for WideNode<N> {}
 
-impl<const N: usize> Boxes<N> for Node<N> {
+// SAFETY: the children are a field.
+unsafe impl<const N: usize> Boxes<N> for WideNode<N> {
     #[inline(always)]
     fn children(&self) -> &[u32; N] {
         &self.children
@@ -78,7 +79,7 @@ impl<const N: usize> Boxes<N> for Node<N> {
     }
 
     #[inline(always)]
-    unsafe fn plane<S: Lanes<N>>(&self, simd: S, _axis: usize, row: usize) -> S::Float {
+    unsafe fn plane<S: Width<N>>(&self, simd: S, _axis: usize, row: usize) -> S::Float {
         // SAFETY: there are six rows, by this function's contract.
         simd.load(unsafe { self.bounds.get_unchecked(row) })
     }
@@ -89,6 +90,6 @@ impl<const N: usize> Boxes<N> for Node<N> {
     }
 
     fn child_bounds(&self, slot: usize) -> Bounds {
-        Node::child_bounds(self, slot)
+        WideNode::child_bounds(self, slot)
     }
 }

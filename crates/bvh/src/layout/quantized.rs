@@ -22,9 +22,9 @@ use crate::layout::boxes::Boxes;
 use crate::layout::boxes::sealed::Sealed;
 use crate::layout::bvh::{Bvh, BvhView};
 use crate::layout::child::Child;
-use crate::layout::node::Node;
+use crate::layout::node::WideNode;
 use crate::layout::triangle_packet::TrianglePacket;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 /// `N` child boxes on a grid of bytes, and what they hold.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +41,7 @@ pub struct QuantizedNode<const N: usize> {
     pub used_slots: u8,
     /// `[lo.x, hi.x, lo.y, hi.y, lo.z, hi.z]`, each `[child]`.
     pub planes: [[u8; N]; 6],
-    /// What each box holds, as in [`Node::children`].
+    /// What each box holds, as in [`WideNode::children`].
     pub children: [u32; N],
 }
 
@@ -102,7 +102,7 @@ impl Grid {
         self.origin + f32::from(q) * self.scale()
     }
 
-    /// The numbers of the planes next to an interval within the grid, outwards.
+    /// The indices of the planes next to an interval within the grid, outwards.
     fn enclosing(self, lo: f32, hi: f32) -> [u8; 2] {
         if self.exponent == UNBOUNDED {
             return [0, 0];
@@ -140,8 +140,8 @@ impl<const N: usize> QuantizedNode<N> {
 
 /// Boxes rounded outwards. Empty boxes, and those that are NaN, lose their slots; the others keep
 /// their order.
-impl<const N: usize> From<&Node<N>> for QuantizedNode<N> {
-    fn from(node: &Node<N>) -> QuantizedNode<N> {
+impl<const N: usize> From<&WideNode<N>> for QuantizedNode<N> {
+    fn from(node: &WideNode<N>) -> QuantizedNode<N> {
         let is_box = |bounds: &Bounds| (0..3).all(|axis| bounds.lo[axis] <= bounds.hi[axis]);
         let mut quantized = QuantizedNode {
             origin: [0.0; 3],
@@ -177,7 +177,8 @@ impl<const N: usize> From<&Node<N>> for QuantizedNode<N> {
 
 impl<const N: usize> Sealed for QuantizedNode<N> {}
 
-impl<const N: usize> Boxes<N> for QuantizedNode<N> {
+// SAFETY: the children are a field.
+unsafe impl<const N: usize> Boxes<N> for QuantizedNode<N> {
     #[inline(always)]
     fn children(&self) -> &[u32; N] {
         &self.children
@@ -190,7 +191,7 @@ impl<const N: usize> Boxes<N> for QuantizedNode<N> {
     }
 
     #[inline(always)]
-    unsafe fn plane<S: Lanes<N>>(&self, simd: S, axis: usize, row: usize) -> S::Float {
+    unsafe fn plane<S: Width<N>>(&self, simd: S, axis: usize, row: usize) -> S::Float {
         let scale = simd.splat(self.grid(axis).scale());
         let origin = simd.splat(self.origin[axis]);
         // SAFETY: there are six rows, by this function's contract.
@@ -237,7 +238,7 @@ impl<const N: usize, const P: usize> From<Bvh<N, P>> for QuantizedBvh<N, P> {
 
 /// From the leaves up: a box is around the decoded boxes below it too, so that they lie inside of
 /// each other as [`BvhView::new`] asks.
-fn quantize<const N: usize>(mut nodes: Vec<Node<N>>) -> Vec<QuantizedNode<N>> {
+fn quantize<const N: usize>(mut nodes: Vec<WideNode<N>>) -> Vec<QuantizedNode<N>> {
     let mut decoded = vec![Bounds::EMPTY; nodes.len()];
     let mut quantized = Vec::with_capacity(nodes.len());
     for index in (0..nodes.len()).rev() {
@@ -267,7 +268,7 @@ impl<const N: usize, const P: usize> QuantizedBvh<N, P> {
     /// What the kernels take.
     #[inline(always)]
     pub fn view(&self) -> BvhView<'_, N, P, QuantizedNode<N>> {
-        // SAFETY: the children are those of a sound hierarchy, in the same places but for slots
+        // SAFETY: the children are those of a sound hierarchy, in the same order but for slots
         // left out; boxes lie inside of each other by construction.
         unsafe { BvhView::new_unchecked(&self.nodes, &self.packets) }
     }

@@ -6,8 +6,8 @@
 //! magic      8 bytes "ResidBVH"
 //! version    u32
 //! N, P       u32, u32
-//! nodes      u64, their number
-//! packets    u64, their number
+//! nodes      u64, how many
+//! packets    u64, how many
 //! cost       f32, by the surface area heuristic
 //! nodes      each 6 × N f32 bounds, N u32 children
 //! packets    each 9 × P f32 vertices, P u32 triangle indices
@@ -20,7 +20,7 @@ use std::fmt;
 use std::io::{self, ErrorKind, Read, Write};
 
 use crate::layout::bvh::Bvh;
-use crate::layout::node::Node;
+use crate::layout::node::WideNode;
 use crate::layout::triangle_packet::TrianglePacket;
 use crate::layout::validate::{InvalidBvh, check_structure};
 
@@ -97,8 +97,8 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
     /// Writes the hierarchy, in pieces of some kilobytes. Equal hierarchies give equal bytes.
     pub fn write_to(&self, writer: &mut impl Write) -> io::Result<()> {
         writer.write_all(&MAGIC)?;
-        for number in [VERSION, N as u32, P as u32] {
-            writer.write_all(&number.to_le_bytes())?;
+        for word in [VERSION, N as u32, P as u32] {
+            writer.write_all(&word.to_le_bytes())?;
         }
         for count in [self.nodes.len(), self.packets.len()] {
             writer.write_all(&(count as u64).to_le_bytes())?;
@@ -109,7 +109,7 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
     }
 
     /// Reads what [`write_to`](Bvh::write_to) wrote, and no byte more. Memory is taken as the bytes
-    /// arrive, whatever their number is said to be.
+    /// arrive, however many are said to follow.
     pub fn read_from(reader: &mut impl Read) -> Result<Bvh<N, P>, LoadError> {
         let magic: [u8; 8] = read(reader)?;
         if magic != MAGIC {
@@ -127,7 +127,7 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
         let node_count = u64::from_le_bytes(read(reader)?);
         let packet_count = u64::from_le_bytes(read(reader)?);
         let sah_cost = f32::from_le_bytes(read(reader)?);
-        let nodes: Vec<Node<N>> = read_records(reader, node_count)?;
+        let nodes: Vec<WideNode<N>> = read_records(reader, node_count)?;
         let packets: Vec<TrianglePacket<P>> = read_records(reader, packet_count)?;
         check_structure(&nodes, &packets).map_err(LoadError::Structure)?;
         Ok(Bvh {
@@ -145,13 +145,13 @@ fn read<const BYTES: usize>(reader: &mut impl Read) -> io::Result<[u8; BYTES]> {
 }
 
 /// A node or a packet as a sequence of 32-bit words.
-trait Record: Sized {
+trait FileRecord: Sized {
     const WORDS: usize;
     fn write(&self, word: &mut dyn FnMut(u32));
     fn read(word: &mut dyn FnMut() -> u32) -> Self;
 }
 
-impl<const N: usize> Record for Node<N> {
+impl<const N: usize> FileRecord for WideNode<N> {
     const WORDS: usize = 7 * N;
 
     fn write(&self, word: &mut dyn FnMut(u32)) {
@@ -160,7 +160,7 @@ impl<const N: usize> Record for Node<N> {
     }
 
     fn read(word: &mut dyn FnMut() -> u32) -> Self {
-        let mut node = Node::VACANT;
+        let mut node = WideNode::VACANT;
         for x in node.bounds.iter_mut().flatten() {
             *x = f32::from_bits(word());
         }
@@ -169,7 +169,7 @@ impl<const N: usize> Record for Node<N> {
     }
 }
 
-impl<const P: usize> Record for TrianglePacket<P> {
+impl<const P: usize> FileRecord for TrianglePacket<P> {
     const WORDS: usize = 10 * P;
 
     fn write(&self, word: &mut dyn FnMut(u32)) {
@@ -188,7 +188,7 @@ impl<const P: usize> Record for TrianglePacket<P> {
     }
 }
 
-fn write_records<R: Record>(writer: &mut impl Write, records: &[R]) -> io::Result<()> {
+fn write_records<R: FileRecord>(writer: &mut impl Write, records: &[R]) -> io::Result<()> {
     let mut bytes = Vec::with_capacity(4 * R::WORDS * CHUNK);
     for chunk in records.chunks(CHUNK) {
         bytes.clear();
@@ -200,7 +200,7 @@ fn write_records<R: Record>(writer: &mut impl Write, records: &[R]) -> io::Resul
     Ok(())
 }
 
-fn read_records<R: Record>(reader: &mut impl Read, count: u64) -> io::Result<Vec<R>> {
+fn read_records<R: FileRecord>(reader: &mut impl Read, count: u64) -> io::Result<Vec<R>> {
     let mut bytes = vec![0; 4 * R::WORDS * CHUNK];
     let mut records = Vec::new();
     let mut left = count;

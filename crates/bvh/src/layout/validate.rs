@@ -19,14 +19,14 @@ pub enum InvalidBvh {
     BadChild {
         /// The parent.
         node: usize,
-        /// The child's place in it.
+        /// The child's slot.
         slot: usize,
     },
     /// A leaf's packets are out of range.
     BadLeaf {
         /// The parent.
         node: usize,
-        /// The leaf's place in it.
+        /// The leaf's slot.
         slot: usize,
     },
     /// A node lies deeper than the traversal's stack allows.
@@ -38,7 +38,7 @@ pub enum InvalidBvh {
     BadBounds {
         /// The parent.
         node: usize,
-        /// The child's place in it.
+        /// The child's slot.
         slot: usize,
     },
 }

@@ -14,7 +14,7 @@ use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
 use crate::precision::triangle_test::sealed::Test;
 use crate::ray::Ray;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 /// Whether a ray meets a triangle is decided without error, for the closed triangle that its `f32`
 /// corners span; so closed meshes have no holes, and nothing is hit that should not be. The
@@ -31,7 +31,7 @@ impl Precision for Exact {}
 
 impl Test for Exact {
     #[inline(always)]
-    fn test<S: Lanes<W>, const W: usize>(
+    fn test<S: Width<W>, const W: usize>(
         self,
         simd: S,
         rays: &Shear<'_, S, W>,
@@ -94,7 +94,7 @@ impl Test for Exact {
 /// term is to spare for the rest and for the roundings of the bound itself. What overflows is
 /// infinite or NaN, and nothing is certain.
 #[inline(always)]
-fn candidates<S: Lanes<W>, const W: usize>(
+fn candidates<S: Width<W>, const W: usize>(
     simd: S,
     rays: &Shear<'_, S, W>,
     triangles: &impl Triangles<S, W>,

@@ -5,7 +5,7 @@ use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
 use crate::precision::triangle_test::sealed::Test;
 use crate::precision::triangle_test::sides;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 /// The fastest test. A ray aimed at an edge may slip between the two triangles that share it, and
 /// distances to triangles seen edge-on may be off by more than roundings. Answers may differ
@@ -17,7 +17,7 @@ impl Precision for Fast {}
 
 impl Test for Fast {
     #[inline(always)]
-    fn test<S: Lanes<W>, const W: usize>(
+    fn test<S: Width<W>, const W: usize>(
         self,
         simd: S,
         rays: &Shear<'_, S, W>,

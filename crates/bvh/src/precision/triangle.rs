@@ -7,18 +7,17 @@ use crate::layout::class::{Axes, axes};
 use crate::layout::columns::Columns;
 use crate::layout::triangle_packet::TrianglePacket;
 use crate::ray::Ray;
-use crate::simd::Lanes;
-use crate::simd::Stored;
+use crate::simd::{Stored, Width};
 
 /// A triangle a lane.
-pub trait Triangles<S: Lanes<W>, const W: usize> {
+pub trait Triangles<S: Width<W>, const W: usize> {
     /// One coordinate of one corner.
     fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float;
     /// The corners in one lane.
     fn corners(&self, lane: usize) -> [[f32; 3]; 3];
 }
 
-impl<S: Lanes<W>, const W: usize> Triangles<S, W> for &TrianglePacket<W> {
+impl<S: Width<W>, const W: usize> Triangles<S, W> for &TrianglePacket<W> {
     #[inline(always)]
     fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
         simd.load(&self.vertices[vertex % 3][axis % 3])
@@ -36,7 +35,7 @@ pub(crate) struct OneTriangle<'a, const P: usize> {
     pub(crate) lane: usize,
 }
 
-impl<S: Lanes<W>, const W: usize, const P: usize> Triangles<S, W> for OneTriangle<'_, P> {
+impl<S: Width<W>, const W: usize, const P: usize> Triangles<S, W> for OneTriangle<'_, P> {
     #[inline(always)]
     fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
         simd.splat(self.packet.vertices[vertex % 3][axis % 3][self.lane % P])
@@ -54,7 +53,7 @@ impl<S: Lanes<W>, const W: usize, const P: usize> Triangles<S, W> for OneTriangl
 /// each to the z axis.
 ///
 /// S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
-pub struct Shear<'a, S: Lanes<W>, const W: usize> {
+pub struct Shear<'a, S: Width<W>, const W: usize> {
     axes: Axes,
     /// Origin, in that order.
     org: [S::Float; 3],
@@ -68,7 +67,7 @@ pub struct Shear<'a, S: Lanes<W>, const W: usize> {
     members: &'a [u16],
 }
 
-impl<'a, S: Lanes<W>, const W: usize> Shear<'a, S, W> {
+impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
     /// One ray, in every lane.
     #[inline(always)]
     pub(crate) fn of_ray(simd: S, ray: &'a Ray, tmin: f32) -> Shear<'a, S, W> {
@@ -173,7 +172,7 @@ impl<'a, S: Lanes<W>, const W: usize> Shear<'a, S, W> {
 }
 
 /// Which lanes hit, and where.
-pub struct LaneHits<S: Lanes<W>, const W: usize> {
+pub struct LaneHits<S: Width<W>, const W: usize> {
     /// Lanes that hit, as bits.
     pub(crate) lanes: u32,
     /// Lanes hit from behind, as bits; meaningful for those that hit.
@@ -183,7 +182,7 @@ pub struct LaneHits<S: Lanes<W>, const W: usize> {
     pub(crate) v: S::Float,
 }
 
-impl<S: Lanes<W>, const W: usize> LaneHits<S, W> {
+impl<S: Width<W>, const W: usize> LaneHits<S, W> {
     /// Only the hits at a distance in `[tmin, tmax]`, if there are any.
     #[inline(always)]
     pub(crate) fn within(mut self, simd: S, tmin: S::Float, tmax: S::Float) -> Option<Self> {

@@ -1,7 +1,7 @@
 //! What a precision is: a test of rays against triangles.
 
 use crate::filter::Culling;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 /// How exactly triangles are tested: [`Fast`](crate::Fast), [`Watertight`](crate::Watertight) or
 /// [`Exact`](crate::Exact). The same hierarchy serves all.
@@ -10,7 +10,7 @@ pub trait Precision: sealed::Test {}
 pub(crate) mod sealed {
     use crate::filter::Culling;
     use crate::precision::triangle::{LaneHits, Shear, Triangles};
-    use crate::simd::Lanes;
+    use crate::simd::Width;
 
     /// The test itself.
     pub trait Test: Copy + Default + Send + Sync + 'static {
@@ -18,7 +18,7 @@ pub(crate) mod sealed {
         /// that `culling` leaves. (Marks of single triangles are the caller's business: see
         /// [`LaneHits::back`].)
         #[doc(hidden)]
-        fn test<S: Lanes<W>, const W: usize>(
+        fn test<S: Width<W>, const W: usize>(
             self,
             simd: S,
             rays: &Shear<'_, S, W>,
@@ -40,7 +40,7 @@ pub(crate) struct Inside {
 /// Inside a triangle the three weights have the same sign, or are zero; in front it is positive.
 /// Of NaN, from coordinates whose products overflow, nothing is said.
 #[inline(always)]
-pub(crate) fn sides<S: Lanes<W>, const W: usize>(
+pub(crate) fn sides<S: Width<W>, const W: usize>(
     simd: S,
     [w, u, v]: [S::Float; 3],
     culling: Culling,

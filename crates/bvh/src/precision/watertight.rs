@@ -15,7 +15,7 @@ use crate::precision::triangle_test::Precision;
 use crate::precision::triangle_test::sealed::Test;
 use crate::precision::triangle_test::sides;
 use crate::ray::Ray;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 /// Closed meshes have no holes: what a ray misses on one side of an edge, it hits on the other.
 /// The same bits on every instruction set.
@@ -33,7 +33,7 @@ const SMALLEST: f32 = 1e-30;
 
 impl Test for Watertight {
     #[inline(always)]
-    fn test<S: Lanes<W>, const W: usize>(
+    fn test<S: Width<W>, const W: usize>(
         self,
         simd: S,
         rays: &Shear<'_, S, W>,

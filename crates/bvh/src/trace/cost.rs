@@ -8,7 +8,8 @@ use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
+use crate::simd::Width;
+use crate::trace::goal::ClosestHit;
 use crate::trace::single::Search;
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
@@ -35,7 +36,7 @@ pub fn traversal_cost<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> TraversalCost
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     let cost = TraversalCost::default();
     if !ray.is_valid() {
@@ -43,8 +44,9 @@ where
     }
     let (tmin, tmax) = ray.interval();
     let (packets, best) = (bvh.packets(), Hit::miss(tmax));
-    let visitor =
-        Search::<S, P, _, _, false>::new(simd, precision, packets, ray, tmin, filter, best);
+    let visitor = Search::new(
+        simd, precision, packets, ray, tmin, filter, ClosestHit, best,
+    );
     let mut counted = Counted { visitor, cost };
     let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
     // SAFETY: the view is structurally valid, and the root is there.
@@ -59,7 +61,7 @@ struct Counted<V> {
 }
 
 impl<V: Visitor> Visitor for Counted<V> {
-    const ANY: bool = V::ANY;
+    type Goal = V::Goal;
     type Item = V::Item;
 
     #[inline(always)]

@@ -2,9 +2,10 @@
 //! them, for single rays and for packets.
 
 pub(crate) mod cost;
+pub(crate) mod goal;
+pub(crate) mod one_by_one;
 mod packet;
 mod prefetch;
-pub(crate) mod scalar;
 pub(crate) mod single;
 pub(crate) mod slab;
 mod sorting_network;

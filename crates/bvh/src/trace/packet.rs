@@ -8,8 +8,7 @@
 
 use std::mem::MaybeUninit;
 
-use crate::filter::improve;
-use crate::filter::{Culling, HitFilter};
+use crate::filter::{Culling, HitFilter, improve};
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
@@ -20,18 +19,19 @@ use crate::layout::validate::MAX_DEPTH;
 use crate::precision::triangle::{LaneHits, OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
-use crate::simd::Stored;
+use crate::simd::{Stored, Width};
+use crate::trace::goal::Goal;
 use crate::trace::prefetch::prefetch_child;
 use crate::trace::single::{query, search};
 use crate::trace::slab::Slab;
 
 /// What stays the same for all packets of a stream.
-pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F, B> {
+pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F, B, G> {
     pub(crate) simd: S,
     pub(crate) precision: Pr,
     pub(crate) bvh: BvhView<'a, N, P, B>,
     pub(crate) filter: &'a F,
+    pub(crate) goal: G,
     /// So many rays of a packet, or fewer, are traced as single rays.
     pub(crate) few: u32,
 }
@@ -49,21 +49,32 @@ struct Entry {
 /// As in `stack.rs`: each level leaves at most N - 1 siblings behind.
 const STACK_CAPACITY: usize = MAX_DEPTH * 16;
 
-impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>>
-    PacketKernel<'_, S, N, P, Pr, F, B>
+impl<S, const N: usize, const P: usize, Pr, F, B, G> PacketKernel<'_, S, N, P, Pr, F, B, G>
+where
+    Pr: Precision,
+    F: HitFilter,
+    B: Boxes<N>,
+    G: Goal,
 {
     /// Traces one ray alone.
     #[inline(always)]
-    pub(crate) fn single<const ANY: bool>(&self, ray: &Ray) -> Hit
+    pub(crate) fn single(&self, ray: &Ray) -> Hit
     where
-        S: Lanes<N> + Lanes<P>,
+        S: Width<N> + Width<P>,
     {
-        query::<S, N, P, Pr, F, B, ANY>(self.simd, self.precision, self.bvh, ray, self.filter)
+        query(
+            self.simd,
+            self.precision,
+            self.bvh,
+            ray,
+            self.filter,
+            self.goal,
+        )
     }
 
-    /// Traces at most `R` rays of one class, which `members` number and `columns` hold.
+    /// Traces at most `R` rays of one class, whose indices are `members` and which `columns` hold.
     #[inline(always)]
-    pub(crate) fn trace<const R: usize, const ANY: bool>(
+    pub(crate) fn trace<const R: usize>(
         &self,
         mut columns: Columns<R>,
         rays: &[Ray],
@@ -71,7 +82,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
         class: Class,
         hits: &mut [Hit],
     ) where
-        S: Lanes<N> + Lanes<P> + Lanes<R>,
+        S: Width<N> + Width<P> + Width<R>,
     {
         let simd = self.simd;
         columns.clip(members.len());
@@ -91,7 +102,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
                 for lane in lanes(active) {
                     // SAFETY: this is the root or a child of one of the hierarchy's nodes.
                     let hit = unsafe {
-                        search::<S, N, P, Pr, F, B, ANY>(
+                        search(
                             simd,
                             self.precision,
                             self.bvh,
@@ -99,14 +110,15 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
                             &rays[members[lane] as usize],
                             columns.tmin[lane],
                             self.filter,
+                            self.goal,
                             best.hit(lane),
                         )
                     };
-                    best.set::<ANY>(lane, &hit);
+                    best.set(lane, &hit, self.goal);
                 }
                 farthest = greatest(best.t);
             } else if child.is_leaf() {
-                if self.leaf::<R, ANY>(child, &shear, &mut best) {
+                if self.leaf(child, &shear, &mut best) {
                     farthest = greatest(best.t);
                 }
             } else {
@@ -131,21 +143,21 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
                         rays: touching,
                     };
                     // Insertion, nearest on top; where any hit will do, the order is the builder's.
-                    let mut place = len;
-                    while !ANY && place > base {
+                    let mut index = len;
+                    while !G::ANY && index > base {
                         // SAFETY: entries below `len` are initialised.
-                        let other = unsafe { stack[place - 1].assume_init() };
+                        let other = unsafe { stack[index - 1].assume_init() };
                         if other.distance >= entry.distance {
                             break;
                         }
-                        stack[place].write(other);
-                        place -= 1;
+                        stack[index].write(other);
+                        index -= 1;
                     }
-                    stack[place].write(entry);
+                    stack[index].write(entry);
                     len += 1;
                 }
             }
-            if ANY {
+            if G::ANY {
                 alive = 0;
                 for (lane, &tmax) in best.t.iter().enumerate() {
                     alive |= u32::from(tmax >= 0.0) << lane;
@@ -179,14 +191,9 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
 
     /// Tests the leaf's triangles. Returns whether there were hits.
     #[inline(always)]
-    fn leaf<const R: usize, const ANY: bool>(
-        &self,
-        leaf: Child,
-        shear: &Shear<'_, S, R>,
-        best: &mut Best<R>,
-    ) -> bool
+    fn leaf<const R: usize>(&self, leaf: Child, shear: &Shear<'_, S, R>, best: &mut Best<R>) -> bool
     where
-        S: Lanes<R>,
+        S: Width<R>,
     {
         let simd = self.simd;
         let mut found = false;
@@ -204,7 +211,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
                 // Rays that are strictly nearer need no second look, unless there is a filter.
                 if !F::REJECTS && !matches!(F::CULLING, Culling::PerTriangle) {
                     let nearer = test.lanes & simd.bits(simd.lt(test.t, ends));
-                    best.improve::<S, ANY>(simd, &test, nearer, prim & !SINGLE_SIDED);
+                    best.improve(simd, &test, nearer, prim & !SINGLE_SIDED, self.goal);
                     test.lanes &= !nearer;
                     found |= nearer != 0;
                 }
@@ -222,7 +229,7 @@ impl<S, const N: usize, const P: usize, Pr: Precision, F: HitFilter, B: Boxes<N>
                     let back = test.back >> lane & 1 == 1;
                     let mut improved = best.hit(lane);
                     if improve(&mut improved, hit, back, shear.ray(lane), self.filter) {
-                        best.set::<ANY>(lane, &improved);
+                        best.set(lane, &improved, self.goal);
                         found = true;
                     }
                 }
@@ -240,7 +247,7 @@ struct Best<const R: usize> {
     t: [f32; R],
     u: [f32; R],
     v: [f32; R],
-    /// The bits of triangle numbers.
+    /// The bits of triangle indices.
     prim: [f32; R],
 }
 
@@ -266,8 +273,8 @@ impl<const R: usize> Best<R> {
     }
 
     #[inline(always)]
-    fn set<const ANY: bool>(&mut self, lane: usize, hit: &Hit) {
-        self.t[lane] = if ANY && hit.is_hit() { -1.0 } else { hit.t };
+    fn set<G: Goal>(&mut self, lane: usize, hit: &Hit, _: G) {
+        self.t[lane] = if G::ANY && hit.is_hit() { -1.0 } else { hit.t };
         self.u[lane] = hit.u;
         self.v[lane] = hit.v;
         self.prim[lane] = f32::from_bits(hit.prim);
@@ -275,18 +282,19 @@ impl<const R: usize> Best<R> {
 
     /// Takes the hits of some lanes with one triangle.
     #[inline(always)]
-    fn improve<S: Lanes<R>, const ANY: bool>(
+    fn improve<S: Width<R>, G: Goal>(
         &mut self,
         simd: S,
         hits: &LaneHits<S, R>,
         lanes: u32,
         prim: u32,
+        _: G,
     ) {
         let replace = |column: &mut [f32; R], new: S::Float| {
             simd.store(simd.select(lanes, new, simd.load(column)), column);
         };
         replace(&mut self.prim, simd.splat(f32::from_bits(prim)));
-        if ANY {
+        if G::ANY {
             replace(&mut self.t, simd.splat(-1.0));
         } else {
             replace(&mut self.t, hits.t);
@@ -296,7 +304,7 @@ impl<const R: usize> Best<R> {
     }
 }
 
-/// The numbers of the bits that are set.
+/// The indices of the bits that are set.
 #[inline(always)]
 fn lanes(bits: u32) -> impl Iterator<Item = usize> {
     let mut rest = bits;

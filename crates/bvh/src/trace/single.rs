@@ -2,8 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::filter::HitFilter;
-use crate::filter::improve;
+use crate::filter::{HitFilter, improve};
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
@@ -11,8 +10,8 @@ use crate::layout::triangle_packet::TrianglePacket;
 use crate::precision::triangle::Shear;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
-use crate::simd::Stored;
+use crate::simd::{Stored, Width};
+use crate::trace::goal::{AnyHit, ClosestHit, Goal};
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
 
@@ -27,9 +26,9 @@ pub fn closest_hit<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> Hit
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
-    query::<S, N, P, _, _, _, false>(simd, precision, bvh, ray, filter)
+    query(simd, precision, bvh, ray, filter, ClosestHit)
 }
 
 /// Whether there is a hit in the ray's interval that `filter` accepts: exactly when
@@ -43,30 +42,23 @@ pub fn any_hit<S, const N: usize, const P: usize>(
     filter: &impl HitFilter,
 ) -> bool
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
-    query::<S, N, P, _, _, _, true>(simd, precision, bvh, ray, filter).is_hit()
+    query(simd, precision, bvh, ray, filter, AnyHit).is_hit()
 }
 
 /// Either query; where any hit will do, the hit is any.
 #[inline(always)]
-pub(crate) fn query<
-    S,
-    const N: usize,
-    const P: usize,
-    Pr: Precision,
-    F: HitFilter,
-    B: Boxes<N>,
-    const ANY: bool,
->(
+pub(crate) fn query<S, const N: usize, const P: usize>(
     simd: S,
-    precision: Pr,
-    bvh: BvhView<'_, N, P, B>,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
     ray: &Ray,
-    filter: &F,
+    filter: &impl HitFilter,
+    goal: impl Goal,
 ) -> Hit
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     if !ray.is_valid() {
         return Hit::miss(ray.tmax);
@@ -74,7 +66,7 @@ where
     let (tmin, tmax) = ray.interval();
     // SAFETY: the root is there.
     let best = unsafe {
-        search::<S, N, P, Pr, F, B, ANY>(
+        search(
             simd,
             precision,
             bvh,
@@ -82,6 +74,7 @@ where
             ray,
             tmin,
             filter,
+            goal,
             Hit::miss(tmax),
         )
     };
@@ -97,46 +90,44 @@ where
 /// # Safety
 /// `start` must be the hierarchy's root or one of its nodes' children.
 #[inline(always)]
-pub(crate) unsafe fn search<S, const N: usize, const P: usize, Pr, F, B, const ANY: bool>(
+pub(crate) unsafe fn search<S, const N: usize, const P: usize>(
     simd: S,
-    precision: Pr,
-    bvh: BvhView<'_, N, P, B>,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
     start: Child,
     ray: &Ray,
     tmin: f32,
-    filter: &F,
+    filter: &impl HitFilter,
+    goal: impl Goal,
     best: Hit,
 ) -> Hit
 where
-    S: Lanes<N> + Lanes<P>,
-    Pr: Precision,
-    F: HitFilter,
-    B: Boxes<N>,
+    S: Width<N> + Width<P>,
 {
     let slab = Slab::<S, N>::of_ray(simd, ray, tmin);
     let packets = bvh.packets();
-    let mut search =
-        Search::<S, P, Pr, F, ANY>::new(simd, precision, packets, ray, tmin, filter, best);
+    let mut search = Search::new(simd, precision, packets, ray, tmin, filter, goal, best);
     // SAFETY: the view is structurally valid, and the start is by this function's contract.
     unsafe { traverse(simd, bvh.nodes(), start, &slab, &mut search) };
     search.best
 }
 
 /// The search for one ray's hit.
-pub(crate) struct Search<'a, S: Lanes<P>, const P: usize, Pr, F, const ANY: bool> {
+pub(crate) struct Search<'a, S: Width<P>, const P: usize, Pr, F, G> {
     simd: S,
     precision: Pr,
     packets: &'a [TrianglePacket<P>],
     shear: Shear<'a, S, P>,
     ray: &'a Ray,
     filter: &'a F,
+    goal: G,
     best: Hit,
 }
 
-impl<S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
-    for Search<'_, S, P, Pr, F, ANY>
+impl<S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
+    for Search<'_, S, P, Pr, F, G>
 {
-    const ANY: bool = ANY;
+    type Goal = G;
     type Item = TrianglePacket<P>;
 
     #[inline(always)]
@@ -160,8 +151,8 @@ impl<S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> 
     }
 }
 
-impl<'a, S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool>
-    Search<'a, S, P, Pr, F, ANY>
+impl<'a, S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, G: Goal>
+    Search<'a, S, P, Pr, F, G>
 {
     /// For a hit better than `best`. The ray is valid, `tmin` not negative.
     #[inline(always)]
@@ -172,6 +163,7 @@ impl<'a, S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bo
         ray: &'a Ray,
         tmin: f32,
         filter: &'a F,
+        goal: G,
         best: Hit,
     ) -> Self {
         Search {
@@ -181,6 +173,7 @@ impl<'a, S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bo
             shear: Shear::of_ray(simd, ray, tmin),
             ray,
             filter,
+            goal,
             best,
         }
     }
@@ -208,8 +201,8 @@ impl<'a, S: Lanes<P>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bo
                 prim: packet.prim_ids[lane],
             };
             let back = hits.back >> lane & 1 == 1;
-            if improve(&mut self.best, hit, back, self.ray, self.filter) && ANY {
-                return ControlFlow::Break(());
+            if improve(&mut self.best, hit, back, self.ray, self.filter) {
+                self.goal.found()?;
             }
         }
         ControlFlow::Continue(())

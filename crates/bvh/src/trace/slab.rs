@@ -19,7 +19,7 @@ use crate::layout::boxes::Boxes;
 use crate::layout::class::Octant;
 use crate::layout::columns::{Columns, greatest, least};
 use crate::ray::Ray;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 const STRETCH: f32 = 1.0 / (1 << 20) as f32;
 const REACH: f32 = 1.0 / (1 << 22) as f32;
@@ -39,7 +39,7 @@ impl Constants {
     /// For rays from `near_org`, as slow as `near_inv`, into the boxes and from `far_org`, as
     /// fast as `far_inv`, out of them. The axes are lanes.
     #[inline(always)]
-    fn new<S: Lanes<4>>(
+    fn new<S: Width<4>>(
         simd: S,
         near_org: [f32; 4],
         near_inv: S::Float,
@@ -66,7 +66,7 @@ impl Constants {
 
 /// `-org * scale`, moved by `reach` of itself.
 #[inline(always)]
-fn shift<S: Lanes<W>, const W: usize>(
+fn shift<S: Width<W>, const W: usize>(
     simd: S,
     org: S::Float,
     scale: S::Float,
@@ -79,7 +79,7 @@ fn shift<S: Lanes<W>, const W: usize>(
 /// The inverse of components of directions, of which `longest` are the greatest, from their signs
 /// and sizes.
 #[inline(always)]
-fn inverse<S: Lanes<W>, const W: usize>(
+fn inverse<S: Width<W>, const W: usize>(
     simd: S,
     sign: S::Float,
     size: S::Float,
@@ -91,7 +91,7 @@ fn inverse<S: Lanes<W>, const W: usize>(
 
 /// The inverse directions of a packet's rays.
 #[inline(always)]
-fn inverse_of_rays<S: Lanes<R>, const R: usize>(
+fn inverse_of_rays<S: Width<R>, const R: usize>(
     simd: S,
     rays: &Columns<R>,
     octant: Octant,
@@ -106,7 +106,7 @@ fn inverse_of_rays<S: Lanes<R>, const R: usize>(
 
 /// One ray's constants, and its octant.
 #[inline(always)]
-fn constants_of_ray<S: Lanes<4>>(simd: S, ray: &Ray) -> (Constants, Octant) {
+fn constants_of_ray<S: Width<4>>(simd: S, ray: &Ray) -> (Constants, Octant) {
     // As they lie in memory; what comes last is of no use.
     let lanes = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last];
     let dir = simd.load(&lanes(ray.dir, ray.tmax));
@@ -122,7 +122,7 @@ fn constants_of_ray<S: Lanes<4>>(simd: S, ray: &Ray) -> (Constants, Octant) {
 }
 
 /// Rays of one octant, prepared for slab tests. Distances are in units of their directions.
-pub(crate) struct Slab<S: Lanes<N>, const N: usize> {
+pub(crate) struct Slab<S: Width<N>, const N: usize> {
     near_scale: [S::Float; 3],
     near_shift: [S::Float; 3],
     far_scale: [S::Float; 3],
@@ -133,13 +133,13 @@ pub(crate) struct Slab<S: Lanes<N>, const N: usize> {
     tmin: S::Float,
 }
 
-impl<S: Lanes<N>, const N: usize> Slab<S, N> {
+impl<S: Width<N>, const N: usize> Slab<S, N> {
     /// One ray, in every lane. `tmin` must not be negative: the slack would then point the wrong
     /// way.
     #[inline(always)]
     pub(crate) fn of_ray(simd: S, ray: &Ray, tmin: f32) -> Slab<S, N>
     where
-        S: Lanes<4>,
+        S: Width<4>,
     {
         let (constants, octant) = constants_of_ray(simd, ray);
         Slab::splat(simd, &constants, octant, tmin)
@@ -174,7 +174,7 @@ impl<S: Lanes<N>, const N: usize> Slab<S, N> {
         octant: Octant,
     ) -> Slab<S, N>
     where
-        S: Lanes<R> + Lanes<4>,
+        S: Width<R> + Width<4>,
     {
         let inv = inverse_of_rays(simd, rays, octant);
         let (mut near_org, mut far_org) = ([0.0; 4], [0.0; 4]);
@@ -192,7 +192,7 @@ impl<S: Lanes<N>, const N: usize> Slab<S, N> {
                 (hi_org, lo_org, lo_inv, hi_inv)
             };
         }
-        let [near_inv, far_inv] = [near_inv, far_inv].map(|inv| <S as Lanes<4>>::load(simd, &inv));
+        let [near_inv, far_inv] = [near_inv, far_inv].map(|inv| <S as Width<4>>::load(simd, &inv));
         let constants = Constants::new(simd, near_org, near_inv, far_org, far_inv);
         Slab::splat(simd, &constants, octant, least(rays.tmin))
     }

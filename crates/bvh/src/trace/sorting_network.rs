@@ -10,7 +10,7 @@ pub(crate) const MOST_KEYS: usize = 8;
 /// Comparators of the networks of up to 16 keys.
 const MOST_COMPARATORS: usize = 63;
 
-/// Pairs of positions, the lower first, to be put in order one after the other.
+/// Pairs of indices, the lower first, to be put in order one after the other.
 struct Network {
     comparators: [[usize; 2]; MOST_COMPARATORS],
     len: usize,
@@ -27,7 +27,7 @@ impl Network {
         let mut stride = widest;
         while stride > 0 {
             // Sequences of every `stride`-th key are merged: keys `distance` apart are exchanged
-            // where the lower position has `parity` in the bit of the stride.
+            // where the lower index has `parity` in the bit of the stride.
             let (mut distance, mut parity, mut next) = (stride, 0, widest);
             loop {
                 let mut low = 0;
@@ -52,7 +52,7 @@ impl Network {
 /// Sorts in descending order; straight-line code for each number of keys, which stay in registers.
 #[inline(always)]
 pub(crate) fn sort<const KEYS: usize>(keys: &mut [u64; KEYS]) {
-    // A loop would leave it to the optimiser whether positions are constants.
+    // A loop would leave it to the optimiser whether indices are constants.
     macro_rules! exchange {
         ($($comparator:literal)*) => {
             const { assert!(Network::of(KEYS).len <= [$($comparator),*].len()) };

@@ -14,8 +14,7 @@ use std::mem::MaybeUninit;
 
 use crate::layout::child::Child;
 use crate::layout::validate::MAX_DEPTH;
-use crate::simd::Lanes;
-use crate::simd::Stored;
+use crate::simd::{Stored, Width};
 use crate::trace::sorting_network::{MOST_KEYS, sort};
 
 /// Subtrees yet to visit, nearest on top: entry distance in the high half, child in the low half.
@@ -63,7 +62,7 @@ impl<const N: usize> Stack<N> {
     /// # Safety
     /// `touched` must not have bits beyond `N`, and there must be room for `N` entries.
     #[inline(always)]
-    pub(crate) unsafe fn descend<S: Lanes<N>>(
+    pub(crate) unsafe fn descend<S: Width<N>>(
         &mut self,
         simd: S,
         touched: u32,
@@ -74,7 +73,7 @@ impl<const N: usize> Stack<N> {
             return Child::VACANT;
         }
         if touched & (touched - 1) == 0 {
-            // SAFETY: slots are positions of bits of `touched`, below N by this function's contract.
+            // SAFETY: slots are indices of bits of `touched`, below N by this function's contract.
             return Child(unsafe { *children.get_unchecked(touched.trailing_zeros() as usize) });
         }
         let Stored(distances) = &Stored::of(simd, entry);
@@ -133,14 +132,14 @@ impl<const N: usize> Stack<N> {
         unsafe {
             for _ in 0..count {
                 let key = next_key();
-                let mut place = self.len;
+                let mut index = self.len;
                 self.push(key);
-                while place > base && self.get(place - 1) < key {
-                    let moved = self.get(place - 1);
-                    self.entries.get_unchecked_mut(place).write(moved);
-                    place -= 1;
+                while index > base && self.get(index - 1) < key {
+                    let moved = self.get(index - 1);
+                    self.entries.get_unchecked_mut(index).write(moved);
+                    index -= 1;
                 }
-                self.entries.get_unchecked_mut(place).write(key);
+                self.entries.get_unchecked_mut(index).write(key);
             }
             self.len -= 1;
             Child(self.get(self.len) as u32)
@@ -162,7 +161,7 @@ impl<const N: usize> Stack<N> {
         while rest != 0 {
             let slot = 31 - rest.leading_zeros();
             rest &= !(1 << slot);
-            // SAFETY: slots are positions of bits of `touched`, below N, and there is room for N
+            // SAFETY: slots are indices of bits of `touched`, below N, and there is room for N
             // entries, by this function's contract.
             unsafe { self.push(u64::from(*children.get_unchecked(slot as usize))) };
         }

@@ -7,7 +7,8 @@ use crate::layout::class::{Class, axes};
 use crate::layout::columns::Columns;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
+use crate::simd::Width;
+use crate::trace::goal::{AnyHit, ClosestHit, Goal};
 use crate::trace::packet::PacketKernel;
 use crate::trace::single::{any_hit, closest_hit};
 
@@ -58,7 +59,7 @@ pub struct Hybrid<const R: usize>;
 
 impl<S, const N: usize, const P: usize> Kernel<S, N, P> for Single
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     #[inline(always)]
     fn closest_hits(
@@ -97,7 +98,7 @@ macro_rules! implement_packet_kernel {
     ($kernel:ident, $few:expr) => {
         impl<S, const N: usize, const P: usize, const R: usize> Kernel<S, N, P> for $kernel<R>
         where
-            S: Lanes<N> + Lanes<P> + Lanes<R>,
+            S: Width<N> + Width<P> + Width<R>,
         {
             #[inline(always)]
             fn closest_hits(
@@ -115,10 +116,11 @@ macro_rules! implement_packet_kernel {
                     precision,
                     bvh,
                     filter,
+                    goal: ClosestHit,
                     few: $few,
                 };
                 for (rays, hits) in rays.chunks(WINDOW).zip(hits.chunks_mut(WINDOW)) {
-                    window::<S, N, P, R, _, _, _, false>(&kernel, rays, hits);
+                    kernel.window::<R>(rays, hits);
                 }
             }
 
@@ -138,12 +140,13 @@ macro_rules! implement_packet_kernel {
                     precision,
                     bvh,
                     filter,
+                    goal: AnyHit,
                     few: $few,
                 };
                 let mut hits = [Hit::miss(0.0); WINDOW];
                 for (rays, occluded) in rays.chunks(WINDOW).zip(occluded.chunks_mut(WINDOW)) {
                     let hits = &mut hits[..rays.len()];
-                    window::<S, N, P, R, _, _, _, true>(&kernel, rays, hits);
+                    kernel.window::<R>(rays, hits);
                     for (hit, occluded) in hits.iter().zip(occluded) {
                         *occluded = hit.is_hit();
                     }
@@ -158,7 +161,7 @@ implement_packet_kernel!(Hybrid, R as u32 / 4);
 /// Rays that are sorted into packets together.
 const WINDOW: usize = 256;
 
-/// The numbers of rays that are in order as they are.
+/// The indices of rays that are in order as they are.
 const IN_ORDER: [u16; 32] = {
     let mut order = [0; 32];
     let mut i = 0;
@@ -183,90 +186,85 @@ fn is_coherent(rays: &[Ray]) -> bool {
         let slopes = |ray: &Ray| [ray.dir[kx] / ray.dir[kz], ray.dir[ky] / ray.dir[kz]];
         let (a, b) = (slopes(&pair[0]), slopes(&pair[1]));
         let near = (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) < SIMILAR;
-        similar += u32::from(near && Class::number(&pair[0]) == Class::number(&pair[1]));
+        similar += u32::from(near && Class::index(&pair[0]) == Class::index(&pair[1]));
         pairs += 1;
     }
     2 * similar >= pairs
 }
 
-/// Traces at most [`WINDOW`] rays.
-#[inline(always)]
-fn window<S, const N: usize, const P: usize, const R: usize, Pr, F, B, const ANY: bool>(
-    kernel: &PacketKernel<'_, S, N, P, Pr, F, B>,
-    rays: &[Ray],
-    hits: &mut [Hit],
-) where
-    S: Lanes<N> + Lanes<P> + Lanes<R>,
+impl<S, const N: usize, const P: usize, Pr, F, B, G> PacketKernel<'_, S, N, P, Pr, F, B, G>
+where
     Pr: Precision,
     F: HitFilter,
     B: Boxes<N>,
+    G: Goal,
 {
-    const { assert!(R <= 32) };
-    if is_coherent(rays) {
-        // Neighbours make good packets as they come.
-        for (rays, hits) in rays.chunks(R).zip(hits.chunks_mut(R)) {
-            let members = &IN_ORDER[..rays.len()];
-            let columns = Columns::<R>::gather(rays, members);
-            match columns.class(kernel.simd) {
-                Some(class) => kernel.trace::<R, ANY>(columns, rays, members, class, hits),
-                None => sort::<S, N, P, R, _, _, _, ANY>(kernel, rays, hits),
-            }
-        }
-    } else if kernel.few > 0 {
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = kernel.single::<ANY>(ray);
-        }
-    } else {
-        sort::<S, N, P, R, _, _, _, ANY>(kernel, rays, hits);
-    }
-}
-
-/// Sorts at most [`WINDOW`] rays by class, keeping their order in each, and traces packets of
-/// neighbours.
-#[inline(always)]
-fn sort<S, const N: usize, const P: usize, const R: usize, Pr, F, B, const ANY: bool>(
-    kernel: &PacketKernel<'_, S, N, P, Pr, F, B>,
-    rays: &[Ray],
-    hits: &mut [Hit],
-) where
-    S: Lanes<N> + Lanes<P> + Lanes<R>,
-    Pr: Precision,
-    F: HitFilter,
-    B: Boxes<N>,
-{
-    let mut numbers = [0u8; WINDOW];
-    let mut ends = [0u16; Class::INVALID + 1];
-    for (ray, number) in rays.iter().zip(&mut numbers) {
-        let class = Class::number(ray);
-        *number = class as u8;
-        ends[class] += 1;
-    }
-    let mut start = 0;
-    for end in &mut ends {
-        (*end, start) = (start, start + *end);
-    }
-    let mut order = [0u16; WINDOW];
-    for (ray, &class) in numbers[..rays.len()].iter().enumerate() {
-        let place = &mut ends[class as usize];
-        order[*place as usize] = ray as u16;
-        *place += 1;
-    }
-    let mut start = 0;
-    for &end in &ends[..Class::INVALID] {
-        for members in order[start as usize..end as usize].chunks(R) {
-            if members.len() as u32 > kernel.few {
-                let class = Class::of(&rays[members[0] as usize]);
-                let columns = Columns::gather(rays, members);
-                kernel.trace::<R, ANY>(columns, rays, members, class, hits);
-            } else {
-                for &member in members {
-                    hits[member as usize] = kernel.single::<ANY>(&rays[member as usize]);
+    /// Traces at most [`WINDOW`] rays.
+    #[inline(always)]
+    fn window<const R: usize>(&self, rays: &[Ray], hits: &mut [Hit])
+    where
+        S: Width<N> + Width<P> + Width<R>,
+    {
+        const { assert!(R <= 32) };
+        if is_coherent(rays) {
+            // Neighbours make good packets as they come.
+            for (rays, hits) in rays.chunks(R).zip(hits.chunks_mut(R)) {
+                let members = &IN_ORDER[..rays.len()];
+                let columns = Columns::<R>::gather(rays, members);
+                match columns.class(self.simd) {
+                    Some(class) => self.trace(columns, rays, members, class, hits),
+                    None => self.sort::<R>(rays, hits),
                 }
             }
+        } else if self.few > 0 {
+            for (ray, hit) in rays.iter().zip(hits) {
+                *hit = self.single(ray);
+            }
+        } else {
+            self.sort::<R>(rays, hits);
         }
-        start = end;
     }
-    for &member in &order[start as usize..rays.len()] {
-        hits[member as usize] = Hit::miss(rays[member as usize].tmax);
+
+    /// Sorts at most [`WINDOW`] rays by class, keeping their order in each, and traces packets of
+    /// neighbours.
+    #[inline(always)]
+    fn sort<const R: usize>(&self, rays: &[Ray], hits: &mut [Hit])
+    where
+        S: Width<N> + Width<P> + Width<R>,
+    {
+        let mut classes = [0u8; WINDOW];
+        let mut ends = [0u16; Class::INVALID + 1];
+        for (ray, class) in rays.iter().zip(&mut classes) {
+            *class = Class::index(ray) as u8;
+            ends[*class as usize] += 1;
+        }
+        let mut start = 0;
+        for end in &mut ends {
+            (*end, start) = (start, start + *end);
+        }
+        let mut order = [0u16; WINDOW];
+        for (ray, &class) in classes[..rays.len()].iter().enumerate() {
+            let end = &mut ends[class as usize];
+            order[*end as usize] = ray as u16;
+            *end += 1;
+        }
+        let mut start = 0;
+        for &end in &ends[..Class::INVALID] {
+            for members in order[start as usize..end as usize].chunks(R) {
+                if members.len() as u32 > self.few {
+                    let class = Class::of(&rays[members[0] as usize]);
+                    let columns = Columns::<R>::gather(rays, members);
+                    self.trace(columns, rays, members, class, hits);
+                } else {
+                    for &member in members {
+                        hits[member as usize] = self.single(&rays[member as usize]);
+                    }
+                }
+            }
+            start = end;
+        }
+        for &member in &order[start as usize..rays.len()] {
+            hits[member as usize] = Hit::miss(rays[member as usize].tmax);
+        }
     }
 }

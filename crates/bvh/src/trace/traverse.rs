@@ -7,7 +7,8 @@ use std::ops::ControlFlow;
 
 use crate::layout::boxes::Boxes;
 use crate::layout::child::Child;
-use crate::simd::Lanes;
+use crate::simd::Width;
+use crate::trace::goal::Goal;
 use crate::trace::prefetch::prefetch_child;
 use crate::trace::slab::Slab;
 use crate::trace::stack::Stack;
@@ -18,8 +19,8 @@ const PREFETCHED: usize = 2;
 
 /// What happens at leaves.
 pub(crate) trait Visitor {
-    /// Whether any hit will do: then the order of visits does not matter.
-    const ANY: bool;
+    /// What the walk is for.
+    type Goal: Goal;
     /// What leaves hold.
     type Item;
 
@@ -35,13 +36,13 @@ pub(crate) trait Visitor {
 }
 
 /// How rays are tested against the boxes of a node.
-pub(crate) trait BoxTest<S: Lanes<N>, const N: usize> {
+pub(crate) trait BoxTest<S: Width<N>, const N: usize> {
     /// The children whose boxes are touched before `tmax`, as bits, and where they are entered.
     fn touched_children(&self, simd: S, node: &impl Boxes<N>, tmax: f32) -> (u32, S::Float);
 }
 
 /// All at once.
-impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for Slab<S, N> {
+impl<S: Width<N>, const N: usize> BoxTest<S, N> for Slab<S, N> {
     #[inline(always)]
     fn touched_children(&self, simd: S, node: &impl Boxes<N>, tmax: f32) -> (u32, S::Float) {
         Slab::touched_children(self, simd, node, tmax)
@@ -54,7 +55,7 @@ impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for Slab<S, N> {
 /// The nodes must be sound, as [`crate::BvhView::new`] checks, and `start` one of their children
 /// or the root.
 #[inline(always)]
-pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, B: Boxes<N>, V: Visitor>(
+pub(crate) unsafe fn traverse<S: Width<N>, const N: usize, B: Boxes<N>, V: Visitor>(
     simd: S,
     nodes: &[B],
     start: Child,
@@ -69,6 +70,8 @@ pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, B: Boxes<N>, V: Visit
             let node = unsafe { nodes.get_unchecked(current.0 as usize) };
             visitor.node();
             let (touched, entry) = test.touched_children(simd, node, visitor.tmax());
+            // Unsafe code relies on these bits, so no test is trusted with them.
+            let touched = touched & (u32::MAX >> (32 - N));
             let mut rest = touched;
             for _ in 0..PREFETCHED {
                 if rest == 0 {
@@ -83,7 +86,7 @@ pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, B: Boxes<N>, V: Visit
             // each level of the tree, and each of the at most MAX_DEPTH nodes on the path to this
             // one left at most N - 1 behind, since one of its children was descended into.
             current = unsafe {
-                if V::ANY {
+                if V::Goal::ANY {
                     stack.descend_unsorted(touched, node.children())
                 } else {
                     stack.descend(simd, touched, entry, node.children())
@@ -95,7 +98,7 @@ pub(crate) unsafe fn traverse<S: Lanes<N>, const N: usize, B: Boxes<N>, V: Visit
         }
         // SAFETY: entries above the bottom have been written, see `Stack`.
         match unsafe {
-            stack.pop(if V::ANY {
+            stack.pop(if V::Goal::ANY {
                 f32::INFINITY
             } else {
                 visitor.tmax()

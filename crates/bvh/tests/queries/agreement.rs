@@ -13,12 +13,7 @@ fn mixed_rays(mesh: &Mesh, count: usize, random: &mut Random) -> Vec<Ray> {
         rays.push(match i % 4 {
             0 => aimed(org, mesh.edge_point(random)),
             1 => aimed(org, mesh.vertex(random)),
-            2 => Ray {
-                org,
-                tmin: 0.0,
-                dir: random.in_cube(1.0),
-                tmax: f32::INFINITY,
-            },
+            2 => Ray::unbounded(org, random.in_cube(1.0)),
             _ => {
                 let mut org = mesh.vertex(random);
                 let axis = random.below(3);
@@ -26,12 +21,7 @@ fn mixed_rays(mesh: &Mesh, count: usize, random: &mut Random) -> Vec<Ray> {
                 org[axis] = -3.0 * sign;
                 let mut dir = [0.0, -0.0, 0.0];
                 dir[axis] = sign;
-                Ray {
-                    org,
-                    tmin: 0.0,
-                    dir,
-                    tmax: f32::INFINITY,
-                }
+                Ray::unbounded(org, dir)
             }
         });
     }
@@ -105,12 +95,7 @@ fn coplanar_grid_seen_edge_on() {
         let org = [x + 6.0, y + 6.0, [0.0, 1e-30, 1e-7, 1e-3][random.below(4)]];
         let mut dir = random.in_cube(1.0);
         dir[2] = [0.0, -0.0, -1e-30, -1e-8, -1e-7, -1e-4][random.below(6)];
-        rays.push(Ray {
-            org,
-            tmin: 0.0,
-            dir,
-            tmax: f32::INFINITY,
-        });
+        rays.push(Ray::unbounded(org, dir));
     }
     check(&mesh, &rays);
 }

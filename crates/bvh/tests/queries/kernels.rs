@@ -2,25 +2,23 @@
 //! for bit (I-01, I-02, I-04, I-14, B-04).
 
 use std::fmt::Debug;
-use std::ops::AddAssign;
 
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, Lanes, Packets, Precision, Ray,
-    Scalar, Single, Watertight, build, closest_hit,
+    AllHits, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets, Precision,
+    Ray, Single, Watertight, Width, build, closest_hit,
 };
 
 use crate::mesh::{Mesh, jittered_icosphere};
 use crate::oracle::{closest_hit_of_all, exact_closest_hit_of_all};
 use crate::runner::{Random, aimed, same};
+use crate::tally::{Counts, Tally, check};
 
 /// Rays that are traced as one stream: not a whole number of windows or packets.
 const BATCH: usize = if cfg!(miri) { 6 } else { 1000 };
 /// Of the mesh.
 const LEVELS: usize = if cfg!(miri) { 0 } else { 2 };
-
-const KERNELS: [&str; 4] = ["single", "packets", "hybrid", "scalar"];
 
 /// A closed mesh around `center`, in hierarchies of all widths, and each triangle alone.
 struct Scene {
@@ -59,7 +57,7 @@ macro_rules! combinations {
     };
 }
 
-// For the best instruction set. Without lanes (trees of one triangle a packet, the scalar kernel)
+// For the best instruction set. Without lanes (trees of one triangle a packet, the kernel without SIMD)
 // `Fast` does not fuse, and gives other bits.
 combinations!(best:
     n2p1(2, 1, 4) by_all Watertight;
@@ -72,10 +70,10 @@ combinations!(best:
     n8p16(8, 16, 4) by_all Watertight;
     n16p8(16, 8, 8) by_all Watertight;
     n16p16(16, 16, 16) by_all Fast Exact;
-    n2p8(2, 8, 4) by_scalar Watertight;
-    n4p16(4, 16, 4) by_scalar Exact;
-    n8p1(8, 1, 4) by_scalar Exact;
-    n16p4(16, 4, 4) by_scalar Watertight;
+    n2p8(2, 8, 4) by_one_by_one Watertight;
+    n4p16(4, 16, 4) by_one_by_one Exact;
+    n8p1(8, 1, 4) by_one_by_one Exact;
+    n16p4(16, 4, 4) by_one_by_one Watertight;
 );
 // For the lesser ones.
 combinations!(others:
@@ -95,40 +93,6 @@ struct Batch {
     exact: Vec<Hit>,
 }
 
-/// What was found; `[kind of ray]` is random or aimed.
-#[derive(Clone, Copy, Default)]
-struct Tally {
-    /// For each precision.
-    precisions: [Counts; 3],
-}
-
-#[derive(Clone, Copy, Default)]
-struct Counts {
-    /// Rays, and those that must hit, and those of them that brute force misses.
-    rays: [usize; 2],
-    inside: [usize; 2],
-    misses: [usize; 2],
-    /// Answers of hierarchies, `[kernel][kind of ray]`, and those unlike brute force's.
-    answers: [[usize; 2]; KERNELS.len()],
-    disagreements: [[usize; 2]; KERNELS.len()],
-}
-
-impl AddAssign for Tally {
-    fn add_assign(&mut self, other: Tally) {
-        for (ours, theirs) in self.precisions.iter_mut().zip(other.precisions) {
-            for kind in 0..2 {
-                ours.rays[kind] += theirs.rays[kind];
-                ours.inside[kind] += theirs.inside[kind];
-                ours.misses[kind] += theirs.misses[kind];
-                for kernel in 0..KERNELS.len() {
-                    ours.answers[kernel][kind] += theirs.answers[kernel][kind];
-                    ours.disagreements[kernel][kind] += theirs.disagreements[kernel][kind];
-                }
-            }
-        }
-    }
-}
-
 /// A precision with its brute force.
 trait Judged: Precision + Debug {
     fn of(batch: &Batch) -> &[Hit];
@@ -136,13 +100,13 @@ trait Judged: Precision + Debug {
 }
 
 macro_rules! implement_judged {
-    ($($precision:ident, $field:ident, $number:literal;)*) => {$(
+    ($($precision:ident, $field:ident, $index:literal;)*) => {$(
         impl Judged for $precision {
             fn of(batch: &Batch) -> &[Hit] {
                 &batch.$field
             }
             fn counts(tally: &mut Tally) -> &mut Counts {
-                &mut tally.precisions[$number]
+                &mut tally.precisions[$index]
             }
         }
     )*};
@@ -156,7 +120,7 @@ fn by_all<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
     batch: &Batch,
     tally: &mut Tally,
 ) where
-    S: Lanes<N> + Lanes<P> + Lanes<R>,
+    S: Width<N> + Width<P> + Width<R>,
 {
     by_some::<S, Pr, N, P, R>(simd, precision, bvh, batch, tally);
     compare(simd, Packets::<R>, precision, bvh, batch, tally, 1);
@@ -169,22 +133,22 @@ fn by_some<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
     batch: &Batch,
     tally: &mut Tally,
 ) where
-    S: Lanes<N> + Lanes<P> + Lanes<R>,
+    S: Width<N> + Width<P> + Width<R>,
 {
     compare(simd, Single, precision, bvh, batch, tally, 0);
     compare(simd, Hybrid::<R>, precision, bvh, batch, tally, 2);
 }
 
-fn by_scalar<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
+fn by_one_by_one<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
     simd: S,
     precision: Pr,
     bvh: &Bvh<N, P>,
     batch: &Batch,
     tally: &mut Tally,
 ) where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
-    compare(simd, Scalar, precision, bvh, batch, tally, 3);
+    compare(simd, OneByOne, precision, bvh, batch, tally, 3);
 }
 
 fn compare<S, Pr: Judged, const N: usize, const P: usize>(
@@ -194,9 +158,9 @@ fn compare<S, Pr: Judged, const N: usize, const P: usize>(
     bvh: &Bvh<N, P>,
     batch: &Batch,
     tally: &mut Tally,
-    number: usize,
+    index: usize,
 ) where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     let (rays, expected, counts) = (&batch.rays, Pr::of(batch), Pr::counts(tally));
     let mut hits = vec![Hit::miss(0.0); rays.len()];
@@ -210,10 +174,10 @@ fn compare<S, Pr: Judged, const N: usize, const P: usize>(
     );
     for i in 0..rays.len() {
         let kind = usize::from(batch.aimed[i]);
-        counts.answers[number][kind] += 1;
+        counts.answers[index][kind] += 1;
         if !same(&hits[i], &expected[i]) || occluded[i] != expected[i].is_hit() {
-            counts.disagreements[number][kind] += 1;
-            if counts.disagreements[number][kind] == 1 {
+            counts.disagreements[index][kind] += 1;
+            if counts.disagreements[index][kind] == 1 {
                 println!(
                     "{precision:?}, {kernel:?}, {N} children, {P} triangles: {:x?}\n  {:?}, {}, expected {:?}",
                     rays[i], hits[i], occluded[i], expected[i]
@@ -373,51 +337,6 @@ fn trials(batches: usize) -> Tally {
         .into_par_iter()
         .map(|i| scenes[i % scenes.len()].trial(1000 + i as u64))
         .reduce(Tally::default, add)
-}
-
-fn report(tally: &Tally) {
-    for (name, counts) in ["Fast", "Watertight", "Exact"]
-        .iter()
-        .zip(&tally.precisions)
-    {
-        for (kind, rays) in ["random", "aimed"].iter().enumerate() {
-            println!(
-                "{name:10} {rays:6}: {} rays, {} from inside, of which {} miss",
-                counts.rays[kind], counts.inside[kind], counts.misses[kind],
-            );
-            for (kernel, name) in KERNELS.iter().enumerate() {
-                let (answers, disagreements) = (
-                    counts.answers[kernel][kind],
-                    counts.disagreements[kernel][kind],
-                );
-                if answers == 0 {
-                    continue;
-                }
-                println!(
-                    "    {name:8} {answers:12} answers, {disagreements} disagree{}",
-                    if disagreements == 0 {
-                        format!(" (less than {:.1e} at 95 %)", 3.0 / answers as f64)
-                    } else {
-                        format!(" ({:.2e})", disagreements as f64 / answers as f64)
-                    }
-                );
-            }
-        }
-    }
-}
-
-fn check(tally: &Tally) {
-    report(tally);
-    let [fast, watertight, exact] = &tally.precisions;
-    for counts in [watertight, exact] {
-        assert_eq!(counts.disagreements, [[0; 2]; KERNELS.len()]);
-        assert_eq!(counts.misses, [0; 2]);
-    }
-    for kernel in 0..KERNELS.len() {
-        assert_eq!(fast.disagreements[kernel][0], 0);
-        // None in five million answers was measured.
-        assert!(fast.disagreements[kernel][1] * 100_000 <= fast.answers[kernel][1]);
-    }
 }
 
 #[test]

@@ -4,6 +4,7 @@
 mod agreement;
 mod cost;
 mod dispatched;
+mod instanced_scene;
 mod instances;
 mod integers;
 mod kernels;
@@ -15,4 +16,5 @@ mod robustness;
 mod runner;
 mod serial;
 mod structure;
+mod tally;
 mod watertight;

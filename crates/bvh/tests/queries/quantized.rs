@@ -2,8 +2,8 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 use residual_bvh::{
-    AllHits, Bounds, Boxes, BuildQuality, Bvh, BvhView, Hit, Hybrid, InvalidBvh, Kernel, Lanes,
-    Node, Packets, QuantizedBvh, QuantizedNode, Ray, Single, Watertight, build,
+    AllHits, Bounds, Boxes, BuildQuality, Bvh, BvhView, Hit, Hybrid, InvalidBvh, Kernel, Packets,
+    QuantizedBvh, QuantizedNode, Ray, Single, Watertight, WideNode, Width, build,
 };
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
@@ -33,8 +33,8 @@ macro_rules! on_every_instruction_set {
 }
 
 /// A node of leaves of one packet each, with these boxes.
-fn node_of<const N: usize>(boxes: &[Bounds]) -> Node<N> {
-    let mut node = Node {
+fn node_of<const N: usize>(boxes: &[Bounds]) -> WideNode<N> {
+    let mut node = WideNode {
         bounds: [0, 1, 2, 3, 4, 5].map(|row| [[f32::INFINITY, f32::NEG_INFINITY][row % 2]; N]),
         children: [LEAF; N],
     };
@@ -62,11 +62,11 @@ fn quantize_and_check<const N: usize>(boxes: &[Bounds]) -> QuantizedNode<N> {
 }
 
 #[inline(always)]
-fn check_decoder<S: Simd + Lanes<N>, const N: usize>(simd: S, node: &QuantizedNode<N>) {
+fn check_decoder<S: Simd + Width<N>, const N: usize>(simd: S, node: &QuantizedNode<N>) {
     for row in 0..6 {
         let mut planes = [0.0; N];
         // SAFETY: the row is its axis's.
-        Lanes::<N>::store(simd, unsafe { node.plane(simd, row / 2, row) }, &mut planes);
+        Width::<N>::store(simd, unsafe { node.plane(simd, row / 2, row) }, &mut planes);
         for (slot, plane) in planes.iter().enumerate() {
             assert_eq!(plane.to_bits(), node.plane_of(slot, row / 2, row).to_bits());
         }

@@ -58,7 +58,7 @@ fn random_bit_patterns() {
     }
 }
 
-/// Zeros, subnormals, huge numbers, infinities and NaN in every place of a ray (I-12).
+/// Zeros, subnormals, huge numbers, infinities and NaN in every component of a ray (I-12).
 #[test]
 fn special_rays() {
     let values = [
@@ -85,8 +85,8 @@ fn special_rays() {
         if random.below(2) == 0 {
             (tmin, tmax) = (0.0, f32::INFINITY);
         }
-        // Mostly ordinary components, so that rays go wrong in one place at a time.
-        let mut place = |ordinary: f32| {
+        // Mostly ordinary components, so that rays go wrong in one component at a time.
+        let mut component = |ordinary: f32| {
             if random.below(4) == 0 {
                 values[random.below(values.len())]
             } else {
@@ -94,8 +94,8 @@ fn special_rays() {
             }
         };
         let (org, dir) = (
-            [0; 3].map(|_| place(0.25)),
-            [place(0.3), place(-0.4), place(1.0)],
+            [0; 3].map(|_| component(0.25)),
+            [component(0.3), component(-0.4), component(1.0)],
         );
         rays.push(Ray {
             org,
@@ -115,12 +115,7 @@ fn special_rays() {
         widths.closest(&ray, &AllHits);
     }
 
-    let good = Ray {
-        org: [0.0; 3],
-        tmin: 0.0,
-        dir: [0.0, 0.0, 1.0],
-        tmax: f32::INFINITY,
-    };
+    let good = Ray::unbounded([0.0; 3], [0.0, 0.0, 1.0]);
     let widths = Widths::new(&mesh, BuildQuality::Medium);
     assert!(widths.closest(&good, &AllHits).is_hit());
     let bad = [
@@ -196,12 +191,7 @@ fn intervals_are_closed() {
     let widths = Widths::new(&mesh, BuildQuality::Best);
     for _ in 0..trials(500) {
         let [x, y, _] = random.in_cube(1.0);
-        let mut ray = Ray {
-            org: [x, y, -3.0],
-            tmin: 0.0,
-            dir: random.in_cube(0.05),
-            tmax: f32::INFINITY,
-        };
+        let mut ray = Ray::unbounded([x, y, -3.0], random.in_cube(0.05));
         ray.dir[2] = 1.0;
         let mut layers = 0;
         loop {

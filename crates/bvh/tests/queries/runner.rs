@@ -53,12 +53,7 @@ impl Random {
 /// A ray from `org` to `target` and beyond; the direction is their rounded difference.
 pub(crate) fn aimed(org: [f32; 3], target: [f32; 3]) -> Ray {
     let dir = [0, 1, 2].map(|axis| target[axis] - org[axis]);
-    Ray {
-        org,
-        tmin: 0.0,
-        dir,
-        tmax: f32::INFINITY,
-    }
+    Ray::unbounded(org, dir)
 }
 
 /// One mesh in hierarchies of all widths.

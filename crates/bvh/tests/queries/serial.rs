@@ -88,9 +88,9 @@ fn every_truncation_is_noticed() {
 fn other_bytes_are_refused() {
     let mut random = Random::new(92);
     let bytes = written::<4, 4>(&built(&soup(30, 0.5, &mut random)));
-    let changed = |place: usize, byte: u8| {
+    let changed = |offset: usize, byte: u8| {
         let mut bytes = bytes.clone();
-        bytes[place] = byte;
+        bytes[offset] = byte;
         read::<4, 4>(&bytes).expect_err("a changed byte")
     };
     assert!(matches!(changed(0, b'Q'), LoadError::NotAHierarchy));
@@ -103,8 +103,8 @@ fn other_bytes_are_refused() {
     assert!(text.contains("4 children"), "{text}");
 
     // More than there is: no memory is taken for it.
-    for place in [27, 35] {
-        assert!(matches!(changed(place, 0x7f), LoadError::Truncated));
+    for offset in [27, 35] {
+        assert!(matches!(changed(offset, 0x7f), LoadError::Truncated));
     }
     let mut none = bytes[..HEADER].to_vec();
     none[20..36].fill(0);

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use residual_bvh::{
-    Bounds, BuildQuality, Bvh, BvhView, InvalidBvh, Node, build, build_with_progress,
+    Bounds, BuildQuality, Bvh, BvhView, InvalidBvh, WideNode, build, build_with_progress,
 };
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
@@ -164,8 +164,8 @@ fn broken_structures_are_refused() {
     let bvh = build8(&grid(40), BuildQuality::Fast);
     let nodes = bvh.nodes();
     assert!(nodes.len() > 3);
-    let inner = |node: &Node<8>| (0..8).find(|&slot| node.children[slot] & LEAF == 0);
-    let leaf = |node: &Node<8>| {
+    let inner = |node: &WideNode<8>| (0..8).find(|&slot| node.children[slot] & LEAF == 0);
+    let leaf = |node: &WideNode<8>| {
         (0..8).find(|&slot| node.children[slot] >> 27 & 15 != 0 && node.children[slot] & LEAF != 0)
     };
     let inner_slot = inner(&nodes[0]).expect("the root has inner children");
@@ -227,7 +227,7 @@ fn shared_and_deep_nodes_are_refused() {
     for row in 0..6 {
         vacant.bounds[row][0] = if row % 2 == 0 { -1.0 } else { 1.0 };
     }
-    let chain: Vec<Node<8>> = (0..65)
+    let chain: Vec<WideNode<8>> = (0..65)
         .map(|i| {
             let mut node = vacant;
             if i < 64 {

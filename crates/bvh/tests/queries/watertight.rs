@@ -79,12 +79,10 @@ fn axis_parallel_rays_hit_grid_vertices() {
         for y in 0..=2 * CELLS {
             for x in 0..=2 * CELLS {
                 for (side, zero) in [(1.0, 0.0), (-1.0, 0.0), (1.0, -0.0), (-1.0, -0.0)] {
-                    let ray = Ray {
-                        org: rotate([x as f32 / 2.0, y as f32 / 2.0, 3.0 * side]),
-                        tmin: 0.0,
-                        dir: rotate([zero, zero, -side]),
-                        tmax: f32::INFINITY,
-                    };
+                    let ray = Ray::unbounded(
+                        rotate([x as f32 / 2.0, y as f32 / 2.0, 3.0 * side]),
+                        rotate([zero, zero, -side]),
+                    );
                     assert_eq!(widths.closest(&ray, &AllHits).t, 3.0, "{ray:?}");
                 }
             }

@@ -11,7 +11,7 @@ use crate::precision::triangle::Shear;
 use crate::precision::triangle_test::sealed::Test;
 use crate::precision::watertight::Watertight;
 use crate::ray::Ray;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 #[path = "../../../tests/queries/integers.rs"]
 mod integers;
@@ -57,12 +57,7 @@ impl Random {
 }
 
 fn towards(org: [f32; 3], target: [f32; 3]) -> Ray {
-    Ray {
-        org,
-        tmin: 0.0,
-        dir: [0, 1, 2].map(|axis| target[axis] - org[axis]),
-        tmax: f32::INFINITY,
-    }
+    Ray::unbounded(org, [0, 1, 2].map(|axis| target[axis] - org[axis]))
 }
 
 /// `[t, u, v]` where the line meets the closed triangle, and whether from behind.
@@ -104,7 +99,7 @@ fn hits<P: Test>(
         }
     }
     #[inline(always)]
-    fn run<S: Lanes<16>, P: Test>(
+    fn run<S: Width<16>, P: Test>(
         simd: S,
         precision: P,
         ray: &Ray,

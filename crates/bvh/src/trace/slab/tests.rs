@@ -6,10 +6,10 @@ use fearless_simd::{Level, dispatch};
 use super::Slab;
 use crate::bounds::Bounds;
 use crate::layout::child::Child;
-use crate::layout::node::Node;
+use crate::layout::node::WideNode;
 use crate::layout::quantized::QuantizedNode;
 use crate::ray::Ray;
-use crate::simd::Lanes;
+use crate::simd::Width;
 
 /// Which of the boxes the ray touches, as bits; all widths must agree.
 fn touched(ray: &Ray, boxes: &[Bounds; 4]) -> u32 {
@@ -23,8 +23,8 @@ fn touched(ray: &Ray, boxes: &[Bounds; 4]) -> u32 {
 }
 
 #[inline(always)]
-fn touched_in<S: Lanes<N>, const N: usize>(simd: S, ray: &Ray, boxes: &[Bounds; 4]) -> u32 {
-    let mut node = Node::<N>::VACANT;
+fn touched_in<S: Width<N>, const N: usize>(simd: S, ray: &Ray, boxes: &[Bounds; 4]) -> u32 {
+    let mut node = WideNode::<N>::VACANT;
     for (slot, bounds) in boxes.iter().enumerate() {
         // As in every hierarchy, boxes are padded.
         node.set_child(slot, &bounds.padded(1.0), Child::VACANT);
@@ -109,12 +109,7 @@ fn exact_touches_are_found() {
             continue;
         }
         let float = |p: [i64; 3]| p.map(|x| x as f32);
-        let ray = Ray {
-            org: float(org),
-            tmin: 0.0,
-            dir: float(dir),
-            tmax: f32::INFINITY,
-        };
+        let ray = Ray::unbounded(float(org), float(dir));
         let found = touched(
             &ray,
             &boxes.map(|(lo, hi)| Bounds {
@@ -161,12 +156,7 @@ fn rays_in_the_planes_of_boxes() {
                             [(0.0, 0b0001), (0.5, 0b0001), (1.0, 0b0111), (2.0, 0b1010)]
                         {
                             org[plane_axis] = at;
-                            let ray = Ray {
-                                org,
-                                tmin: 0.0,
-                                dir,
-                                tmax: f32::INFINITY,
-                            };
+                            let ray = Ray::unbounded(org, dir);
                             assert_eq!(touched(&ray, &boxes), expected, "{ray:?}");
                         }
                     }
@@ -180,15 +170,15 @@ fn rays_in_the_planes_of_boxes() {
 /// would be empty by the slack, which from afar is greater than the node.
 #[test]
 fn quantised_slots() {
-    fn check<S: Lanes<N>, const N: usize>(simd: S, ray: &Ray, node: &Node<N>, used: usize) {
+    fn check<S: Width<N>, const N: usize>(simd: S, ray: &Ray, node: &WideNode<N>, used: usize) {
         let slab = Slab::<S, N>::of_ray(simd, ray, 0.0);
         let (plain, _) = slab.touched_children(simd, node, f32::INFINITY);
         let (quantized, _) = slab.touched_children(simd, &QuantizedNode::from(node), f32::INFINITY);
         assert_eq!(plain & !quantized, 0, "{ray:?}");
         assert_eq!(quantized >> used, 0, "{ray:?}");
     }
-    fn node<const N: usize>(random: &mut Random, used: usize) -> Node<N> {
-        let mut node = Node::VACANT;
+    fn node<const N: usize>(random: &mut Random, used: usize) -> WideNode<N> {
+        let mut node = WideNode::VACANT;
         for slot in 0..used {
             let lo = [0; 3].map(|_| random.below(1000) as f32 * 1e-5);
             let hi = lo.map(|x| x + random.below(1000) as f32 * 1e-5);
@@ -202,16 +192,11 @@ fn quantised_slots() {
         let used = random.below(4) as usize;
         let distance = [1.0, 1e3, 1e6][round % 3];
         let org = [0; 3].map(|_| (random.below(2001) - 1000) as f32 * 1e-3 * distance);
-        let ray = Ray {
-            org,
-            tmin: 0.0,
-            dir: org.map(|x| random.below(20) as f32 * 1e-3 - x),
-            tmax: f32::INFINITY,
-        };
+        let ray = Ray::unbounded(org, org.map(|x| random.below(20) as f32 * 1e-3 - x));
         let (four, sixteen) = (node::<4>(&mut random, used), node::<16>(&mut random, used));
-        let inverted = Node {
+        let inverted = WideNode {
             bounds: [0, 1, 2, 3, 4, 5].map(|row| [[0.02, 0.0][row % 2]; 4]),
-            ..Node::VACANT
+            ..WideNode::VACANT
         };
         touched += dispatch!(Level::new(), simd => {
             check(simd, &ray, &four, used);

@@ -1,11 +1,10 @@
-//! The scalar kernel: one box, or one triangle, at a time. It is what the others are compared with:
+//! The kernel without SIMD: one box, or one triangle, at a time. It is what the others are compared with:
 //! the same walk, and the same tests in one lane.
 
 use std::ops::ControlFlow;
 
 use crate::bounds::Bounds;
-use crate::filter::HitFilter;
-use crate::filter::improve;
+use crate::filter::{HitFilter, improve};
 use crate::layout::boxes::Boxes;
 use crate::layout::boxes::sealed::Sealed;
 use crate::layout::bvh::BvhView;
@@ -14,8 +13,8 @@ use crate::layout::triangle_packet::TrianglePacket;
 use crate::precision::triangle::{OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::Lanes;
-use crate::simd::Stored;
+use crate::simd::{Stored, Width};
+use crate::trace::goal::{AnyHit, ClosestHit, Goal};
 use crate::trace::slab::Slab;
 use crate::trace::stream::Kernel;
 use crate::trace::traverse::{BoxTest, Visitor, traverse};
@@ -25,11 +24,11 @@ use crate::trace::traverse::{BoxTest, Visitor, traverse};
 ///
 /// [`Fast`]: crate::Fast
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Scalar;
+pub struct OneByOne;
 
-impl<S, const N: usize, const P: usize> Kernel<S, N, P> for Scalar
+impl<S, const N: usize, const P: usize> Kernel<S, N, P> for OneByOne
 where
-    S: Lanes<N> + Lanes<P>,
+    S: Width<N> + Width<P>,
 {
     #[inline(always)]
     fn closest_hits(
@@ -43,7 +42,7 @@ where
     ) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = query::<S, N, P, _, _, _, false>(simd, precision, bvh, ray, filter);
+            *hit = query(simd, precision, bvh, ray, filter, ClosestHit);
         }
     }
 
@@ -59,39 +58,35 @@ where
     ) {
         assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
         for (ray, occluded) in rays.iter().zip(occluded) {
-            *occluded = query::<S, N, P, _, _, _, true>(simd, precision, bvh, ray, filter).is_hit();
+            *occluded = query(simd, precision, bvh, ray, filter, AnyHit).is_hit();
         }
     }
 }
 
 #[inline(always)]
-fn query<S, const N: usize, const P: usize, Pr, F, B, const ANY: bool>(
+fn query<S: Width<N>, const N: usize, const P: usize>(
     simd: S,
-    precision: Pr,
-    bvh: BvhView<'_, N, P, B>,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>>,
     ray: &Ray,
-    filter: &F,
-) -> Hit
-where
-    S: Lanes<N>,
-    Pr: Precision,
-    F: HitFilter,
-    B: Boxes<N>,
-{
+    filter: &impl HitFilter,
+    goal: impl Goal,
+) -> Hit {
     if !ray.is_valid() {
         return Hit::miss(ray.tmax);
     }
     let (tmin, tmax) = ray.interval();
-    let mut search = Search::<S, P, Pr, F, ANY> {
+    let mut search = Search {
         simd,
         precision,
         packets: bvh.packets(),
         shear: Shear::<S, 1>::of_ray(simd, ray, tmin),
         ray,
         filter,
+        goal,
         best: Hit::miss(tmax),
     };
-    let test = OneByOne(Slab::<S, 1>::of_ray(simd, ray, tmin));
+    let test = BoxByBox(Slab::<S, 1>::of_ray(simd, ray, tmin));
     // SAFETY: the view is structurally valid, and the root is there.
     unsafe { traverse(simd, bvh.nodes(), Child::ROOT, &test, &mut search) };
     if search.best.is_hit() {
@@ -102,9 +97,9 @@ where
 }
 
 /// The boxes of a node one after the other.
-struct OneByOne<S: Lanes<1>>(Slab<S, 1>);
+struct BoxByBox<S: Width<1>>(Slab<S, 1>);
 
-impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for OneByOne<S> {
+impl<S: Width<N>, const N: usize> BoxTest<S, N> for BoxByBox<S> {
     #[inline(always)]
     fn touched_children(&self, simd: S, node: &impl Boxes<N>, tmax: f32) -> (u32, S::Float) {
         let mut touched = 0;
@@ -116,7 +111,7 @@ impl<S: Lanes<N>, const N: usize> BoxTest<S, N> for OneByOne<S> {
             let (touches, entry) = self.0.touched_children(simd, &OneBox { node, slot }, tmax);
             touched |= touches << slot;
             let mut lane = [0.0];
-            <S as Lanes<1>>::store(simd, entry, &mut lane);
+            <S as Width<1>>::store(simd, entry, &mut lane);
             [*distance] = lane;
         }
         (touched & node.used(), simd.load(&distances))
@@ -132,7 +127,8 @@ struct OneBox<'a, B, const N: usize> {
 
 impl<B, const N: usize> Sealed for OneBox<'_, B, N> {}
 
-impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
+// SAFETY: the child is one of a node that gives the same children each time.
+unsafe impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
     #[inline(always)]
     fn children(&self) -> &[u32; 1] {
         std::array::from_ref(&self.node.children()[self.slot])
@@ -144,7 +140,7 @@ impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
     }
 
     #[inline(always)]
-    unsafe fn plane<S: Lanes<1>>(&self, simd: S, axis: usize, row: usize) -> S::Float {
+    unsafe fn plane<S: Width<1>>(&self, simd: S, axis: usize, row: usize) -> S::Float {
         simd.splat(self.node.plane_of(self.slot, axis, row))
     }
 
@@ -159,20 +155,21 @@ impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
 }
 
 /// The search for one ray's hit.
-struct Search<'a, S: Lanes<1>, const P: usize, Pr, F, const ANY: bool> {
+struct Search<'a, S: Width<1>, const P: usize, Pr, F, G> {
     simd: S,
     precision: Pr,
     packets: &'a [TrianglePacket<P>],
     shear: Shear<'a, S, 1>,
     ray: &'a Ray,
     filter: &'a F,
+    goal: G,
     best: Hit,
 }
 
-impl<S: Lanes<1>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> Visitor
-    for Search<'_, S, P, Pr, F, ANY>
+impl<S: Width<1>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
+    for Search<'_, S, P, Pr, F, G>
 {
-    const ANY: bool = ANY;
+    type Goal = G;
     type Item = TrianglePacket<P>;
 
     #[inline(always)]
@@ -201,8 +198,8 @@ impl<S: Lanes<1>, const P: usize, Pr: Precision, F: HitFilter, const ANY: bool> 
                 let Some(test) = test else { continue };
                 let [Stored([t]), Stored([u]), Stored([v])] = test.store(self.simd);
                 let hit = Hit { t, u, v, prim };
-                if improve(&mut self.best, hit, test.back != 0, self.ray, self.filter) && ANY {
-                    return ControlFlow::Break(());
+                if improve(&mut self.best, hit, test.back != 0, self.ray, self.filter) {
+                    self.goal.found()?;
                 }
             }
         }
