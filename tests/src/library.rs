@@ -8,8 +8,8 @@ use std::fs;
 use addr2line::gimli::{Dwarf, EndianSlice, LittleEndian};
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, SymbolKind};
 use residual_device_cpu::LaneCount;
+use residual_driver::compile_with_line_tables;
 use residual_scenegen::plan::Plan;
-use xtask::compile::compile_with_line_tables;
 
 /// A library's contents.
 #[derive(Debug, Default)]

@@ -141,7 +141,7 @@ fn a_renderer_for_everything_gives_the_same_bits() {
         [&Effect::BackFaceCulling, &Effect::OrthographicCamera]
     );
 
-    let renderer = xtask::compile::compile(&everything, LaneCount::Eight).unwrap();
+    let renderer = residual_driver::compile(&everything, LaneCount::Eight).unwrap();
     let prepared = Prepared::new(&everything, LaneCount::Eight);
     let image = prepared.render(&renderer, &Look::new(SIZE, 8)).image();
     assert_eq!(first_difference(&expected, &image), None);

@@ -79,7 +79,7 @@ fn five_hundred_materials_of_three_kinds_are_three_programs() {
     assert_eq!(constants.structure.programs.len(), COUNT);
 }
 
-/// A text is compiled once (`xtask::compile` knows renderers by their text), so the same text compiles nothing.
+/// A text is compiled once (`residual_driver::compile` knows renderers by their text), so the same text compiles nothing.
 #[test]
 fn an_edited_colour_compiles_nothing() {
     let scene = wall();
@@ -87,7 +87,7 @@ fn an_edited_colour_compiles_nothing() {
     // Nobody waits for a renderer of hundreds of programs.
     assert!(plan.structure.programs.len() < 10);
     let text = rust::module(&plan, "Eight");
-    let renderer = xtask::compile::compile(&plan, LaneCount::Eight).unwrap();
+    let renderer = residual_driver::compile(&plan, LaneCount::Eight).unwrap();
     let before = interpreted(&plan).image();
     for number in [0, 1, 2, COUNT - 1] {
         let plan = planned(&edited(scene.clone(), number), Binding::Structure);

@@ -64,7 +64,7 @@ fn check(scene: &SceneDesc, samples: u32, compiled: &[LaneCount]) {
         let prepared = Prepared::new(&plan, lanes);
         let renderer = compiled
             .contains(&lanes)
-            .then(|| xtask::compile::compile(&plan, lanes).unwrap());
+            .then(|| residual_driver::compile(&plan, lanes).unwrap());
         for look in looks {
             let what = format!("{}, {lanes} lanes, {} threads", scene.name, look.threads);
             expect_same(

@@ -222,7 +222,7 @@ fn check(tracer: TracerNode, layers: Layers, others: &[LaneCount]) {
     let native = Prepared::new(&plan, LaneCount::native());
     let expected = native.interpret(&look);
     assert_eq!(expected.invalid_samples(), 0);
-    let compiled = xtask::compile::compile(&plan, LaneCount::native()).unwrap();
+    let compiled = residual_driver::compile(&plan, LaneCount::native()).unwrap();
     let tiled = Look {
         threads: 1,
         tile_size: Some(8),

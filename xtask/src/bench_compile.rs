@@ -11,6 +11,9 @@ use residual_benches::compile::{
 };
 use residual_benches::measure::children_time;
 use residual_device_cpu::LaneCount;
+use residual_driver::cache::Cache;
+use residual_driver::compile::{Compiler, Origin, library_source};
+use residual_driver::workspace;
 use residual_metrics::Estimate;
 use residual_scenegen::emit::wgsl_module;
 use residual_scenegen::import::{ImportOptions, import};
@@ -18,9 +21,6 @@ use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 
 use crate::args::CompileBenchArgs;
 use crate::bench::scenes_or_own;
-use crate::cache::Cache;
-use crate::compile::{Compiler, Origin, library_source};
-use crate::workspace;
 
 pub(crate) fn run(args: &CompileBenchArgs) -> Result<()> {
     let mut rows = Vec::new();

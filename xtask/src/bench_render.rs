@@ -11,13 +11,13 @@ use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{
     AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, Traversal,
 };
+use residual_driver::compile;
 use residual_frontend::hierarchy_quality;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, plan};
 
 use crate::args::RenderBenchArgs;
 use crate::bench::scenes_or_own;
-use crate::compile::compile;
 
 pub(crate) fn run(args: &RenderBenchArgs) -> Result<()> {
     let embree = match Embree::load(Isa::preferred()) {

@@ -5,9 +5,9 @@ use residual_benches::measure::Pinned;
 use residual_benches::shading::table::{interface_table, kind_table};
 use residual_benches::shading::{plan, shading};
 use residual_device_cpu::TileRenderer;
+use residual_driver::compile;
 
 use crate::args::ShadingArgs;
-use crate::compile::compile;
 
 pub(crate) fn run(args: &ShadingArgs) -> Result<()> {
     let plan = plan();

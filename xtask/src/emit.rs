@@ -4,16 +4,17 @@ use std::fs;
 
 use anyhow::{Context, Result};
 use residual_device_cpu::LaneCount;
+use residual_driver::compile::lanes_name;
 use residual_scenegen::emit::{rust, wgsl_module};
 
 use crate::args::{EmitArgs, TargetArg};
-use crate::{compile, scene};
+use crate::scene;
 
 pub(crate) fn run(args: &EmitArgs) -> Result<()> {
     let (plan, _) = scene::load(&args.scene)?;
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let (text, extension) = match args.target {
-        TargetArg::Rust => (rust::module(&plan, &compile::lanes_name(lanes)), "rs"),
+        TargetArg::Rust => (rust::module(&plan, &lanes_name(lanes)), "rs"),
         TargetArg::Wgsl => (wgsl_module(&plan.structure), "wgsl"),
     };
     match &args.output {

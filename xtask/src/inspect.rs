@@ -1,28 +1,29 @@
 //! `cargo xtask inspect`: effects in and out with the reason for each, what the plan decided, programs.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use residual_device_cpu::LaneCount;
+use residual_driver::price::{self, Price, PriceOptions, PricedTier};
 use residual_frontend::hierarchy_quality;
 use residual_frontend::stats::mib;
+use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::effects::{Effect, Effects};
-use residual_scenegen::plan::{BindingTimes, Decision, Plan};
+use residual_scenegen::plan::{BindingTimes, Decision, Plan, PlanOptions};
 use serde_json::{Map, Value, json};
 
-use crate::args::InspectArgs;
-use crate::price::{self, Price};
-use crate::scene;
+use crate::args::{InspectArgs, TierArg};
+use crate::{prices, scene};
 
 pub(crate) fn run(args: &InspectArgs) -> Result<()> {
     let (plan, description, options) = scene::load_with_description(&args.scene)?;
     let effects = Effects::of(&plan);
     let prices = match args.measure {
-        true => Some(price::prices(&plan, &description, &options, args)?),
+        true => Some(measure(&plan, &description, &options, args)?),
         false => None,
     };
     if args.json {
         let mut report = report(&plan, &effects);
         if let Some(prices) = prices {
-            report["prices"] = prices.iter().map(Price::json).collect();
+            report["prices"] = prices.iter().map(prices::json).collect();
         }
         println!("{report}");
     } else {
@@ -30,11 +31,32 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
         if let Some(prices) = prices {
             println!(
                 "\nprices, in parts of the time of rendering:\n{}",
-                price::table(&prices)
+                prices::table(&prices)
             );
         }
     }
     Ok(())
+}
+
+fn measure(
+    plan: &Plan,
+    scene: &SceneDesc,
+    options: &PlanOptions,
+    args: &InspectArgs,
+) -> Result<Vec<Price>> {
+    let measurement = PriceOptions {
+        rounds: args.rounds,
+        samples: args.spp,
+        tier: match args.tier {
+            TierArg::Interpreted => PricedTier::Interpreted,
+            TierArg::Auto | TierArg::Specialized => PricedTier::Specialized,
+        },
+    };
+    let prices = price::prices(plan, scene, options, &measurement, prices::say);
+    prices.with_context(|| match measurement.tier {
+        PricedTier::Interpreted => "measuring prices",
+        PricedTier::Specialized => "--tier interpreted measures without a compiler",
+    })
 }
 
 /// What the plan decided, and what this machine adds.

@@ -1,6 +1,6 @@
 //! The command line of Residual: `cargo xtask render scene.gltf`.
 //!
-//! A library, so that tests can compile renderers and build the command line for themselves.
+//! A library, so that tests can build the command line for themselves. It reads arguments, calls the driver, and prints.
 
 mod args;
 mod bench;
@@ -9,14 +9,11 @@ mod bench_render;
 mod bench_shading;
 mod build;
 mod cache;
-pub mod compile;
 mod emit;
 mod inspect;
-mod price;
+mod prices;
 mod render;
 mod scene;
-mod tiers;
-mod workspace;
 
 use std::process::ExitCode;
 

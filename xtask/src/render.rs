@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView};
+use residual_driver::tiers::{Ledger, Tiers};
 use residual_frontend::hierarchy_quality;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{Preparation, Statistics};
 
 use crate::args::{RenderArgs, SpecializeArg, TierArg};
 use crate::scene;
-use crate::tiers::{Ledger, Tiers};
 
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let session = Session::new(
@@ -43,7 +43,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             && let Some(compilation) = compilation
         {
             compilation.join().expect("compilation does not panic");
-            tiers.expect_compiled()?;
+            tiers
+                .expect_compiled()
+                .context("--tier interpreted renders without a compiler")?;
         }
         let view = SceneView {
             buffers: plan.data.buffers(),

@@ -19,8 +19,8 @@ struct Compilation {
     time: Duration,
 }
 
-/// The renderers of a scene.
-pub(crate) struct Tiers<'a> {
+/// The renderers of a scene. One thread calls [`Tiers::compile`], another renders and asks [`Tiers::choose`].
+pub struct Tiers<'a> {
     plan: &'a Plan,
     lanes: LaneCount,
     interpreter: Interpreter,
@@ -30,7 +30,7 @@ pub(crate) struct Tiers<'a> {
 
 /// What the tiers did, as far as it is known between passes.
 #[derive(Default)]
-pub(crate) struct Ledger(RefCell<Entries>);
+pub struct Ledger(RefCell<Entries>);
 
 #[derive(Default)]
 struct Entries {
@@ -57,7 +57,8 @@ impl Work {
 }
 
 impl<'a> Tiers<'a> {
-    pub(crate) fn new(plan: &'a Plan, lanes: LaneCount) -> Self {
+    /// The interpreter is ready; nothing is compiled yet.
+    pub fn new(plan: &'a Plan, lanes: LaneCount) -> Self {
         Self {
             plan,
             lanes,
@@ -68,7 +69,7 @@ impl<'a> Tiers<'a> {
     }
 
     /// Compiles. Runs beside everything else.
-    pub(crate) fn compile(&self) {
+    pub fn compile(&self) {
         self.compilation.get_or_init(|| {
             let start = Instant::now();
             let result = self.compiler.compile(self.plan, self.lanes);
@@ -77,19 +78,21 @@ impl<'a> Tiers<'a> {
         });
     }
 
+    /// To be called when [`Tiers::compile`] has returned, where nothing is to be interpreted.
+    ///
     /// # Errors
     /// If compilation has failed.
-    pub(crate) fn expect_compiled(&self) -> Result<()> {
+    pub fn expect_compiled(&self) -> Result<()> {
         match self.compilation.get() {
             Some(Compilation {
                 result: Err(error), ..
-            }) => bail!("{error:#}\n--tier interpreted renders without a compiler"),
+            }) => bail!("{error:#}"),
             _ => Ok(()),
         }
     }
 
     /// The renderer of the next pass.
-    pub(crate) fn choose(&self, ledger: &Ledger) -> &dyn TileRenderer {
+    pub fn choose(&self, ledger: &Ledger) -> &dyn TileRenderer {
         let mut entries = ledger.0.borrow_mut();
         entries.began = process_time();
         match self.compilation.get() {
@@ -107,26 +110,26 @@ impl<'a> Tiers<'a> {
     }
 
     /// To be called when rendering is over: a compiler that still runs comes too late, and one that failed is told of.
-    pub(crate) fn end(&self) {
+    pub fn end(&self) {
         if self.compilation.get().is_none() {
             self.compiler.give_up();
         }
     }
 
     /// How long compiling took, as far as it went.
-    pub(crate) fn compile_time(&self) -> Duration {
+    pub fn compile_time(&self) -> Duration {
         let compilation = self.compilation.get();
         compilation.map_or(Duration::ZERO, |compilation| compilation.time)
     }
 
     /// Why there is no compiled renderer, if the compiler is to blame.
-    pub(crate) fn failure(&self) -> Option<&anyhow::Error> {
+    pub fn failure(&self) -> Option<&anyhow::Error> {
         let error = self.compilation.get()?.result.as_ref().err();
         error.filter(|_| !self.compiler.was_given_up())
     }
 
     /// What was used, and when compiling paid for itself on so many threads.
-    pub(crate) fn report(&self, ledger: &Ledger, threads: usize) -> TierReport {
+    pub fn report(&self, ledger: &Ledger, threads: usize) -> TierReport {
         let entries = ledger.0.borrow();
         TierReport {
             tier: match entries.compiled_from {
@@ -141,7 +144,7 @@ impl<'a> Tiers<'a> {
 
 impl Ledger {
     /// To be called after each pass.
-    pub(crate) fn add(&self, progress: &Progress<'_>) {
+    pub fn add(&self, progress: &Progress<'_>) {
         let mut entries = self.0.borrow_mut();
         let work = Work {
             samples: progress.samples - entries.samples,

@@ -20,23 +20,66 @@ use residual_scenegen::ablation::{instead, without};
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
-use serde_json::{Value, json};
 
-use crate::args::{InspectArgs, TierArg};
 use crate::compile::compile;
 
 /// One line of the price list.
-pub(crate) struct Price {
-    effect: Effect,
+#[derive(Clone, Debug)]
+pub struct Price {
+    /// The effect.
+    pub effect: Effect,
     /// What was rendered instead.
-    instead: &'static str,
+    pub instead: &'static str,
     /// Whether the scene calls for it.
-    is_in: bool,
-    /// The part of the rendering time that goes into it: 1 − time without / time with.
-    time: Estimate,
-    /// Difference of the images.
-    flip: Jackknifed,
-    relmse: Jackknifed,
+    pub is_in: bool,
+    /// The part of the rendering time that goes into it: 1 − time without / time with. For an effect that is out, the part
+    /// that compiling it in would add.
+    pub time: Estimate,
+    /// Difference of the images: mean ꟻLIP.
+    pub flip: Jackknifed,
+    /// Difference of the images: relative mean squared error.
+    pub relmse: Jackknifed,
+}
+
+/// How prices are measured.
+#[derive(Clone, Copy, Debug)]
+pub struct PriceOptions {
+    /// Measured rounds, at least one; a round before them, which warms caches, does not count.
+    pub rounds: u32,
+    /// Samples per pixel in a round.
+    pub samples: u32,
+    /// How the renderers are made.
+    pub tier: PricedTier,
+}
+
+/// How the renderers are made that are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PricedTier {
+    /// Without a compiler.
+    Interpreted,
+    /// Compiled, each before the first round.
+    Specialized,
+}
+
+/// What has been done on the way to a price list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The next renderer is about to be compiled.
+    Compiling {
+        /// Which one, from 1.
+        renderer: usize,
+        /// Of how many.
+        renderers: usize,
+    },
+    /// A round has been measured.
+    Measured {
+        /// Which one; 0 does not count.
+        round: u32,
+        /// Of how many.
+        rounds: u32,
+        /// Renders of a round.
+        renders: usize,
+    },
 }
 
 /// A scene that is rendered, and what came of it.
@@ -67,22 +110,27 @@ impl Renderer {
     }
 }
 
-/// Measures all effects for which that makes sense; the dearest first.
-pub(crate) fn prices(
+/// Measures all effects for which that makes sense; the dearest first. `with` is the plan of the scene with these options.
+/// `report` is called after each step.
+///
+/// # Errors
+/// If a renderer cannot be compiled, or threads cannot be started.
+pub fn prices(
     with: &Plan,
     scene: &SceneDesc,
     options: &PlanOptions,
-    args: &InspectArgs,
+    measurement: &PriceOptions,
+    mut report: impl FnMut(Step),
 ) -> Result<Vec<Price>> {
-    let mut variants = variants(with, scene, options, args)?;
+    let mut variants = variants(with, scene, options, measurement.tier, &mut report)?;
     let device = CpuDevice::new(0).context("starting threads")?;
     let count = variants.len();
-    for round in 0..=args.rounds {
+    for round in 0..=measurement.rounds {
         for turn in 0..count {
             let variant = &mut variants[(round as usize + turn) % count];
             let job = RenderOptions {
                 size: options.size,
-                samples: Some(args.spp),
+                samples: Some(measurement.samples),
                 time: None,
                 max_depth: 8,
                 seed: round,
@@ -102,10 +150,11 @@ pub(crate) fn prices(
                 variant.images.push(film.image());
             }
         }
-        eprintln!(
-            "measured {round} of {} rounds of {count} renders",
-            args.rounds
-        );
+        report(Step::Measured {
+            round,
+            rounds: measurement.rounds,
+            renders: count,
+        });
     }
     let (with, others) = variants.split_first().expect("the scene as it is");
     let mut prices: Vec<_> = others
@@ -121,7 +170,8 @@ fn variants(
     with: &Plan,
     scene: &SceneDesc,
     options: &PlanOptions,
-    args: &InspectArgs,
+    tier: PricedTier,
+    report: &mut impl FnMut(Step),
 ) -> Result<Vec<Variant>> {
     let effects = Effects::of(with);
     let mut plans = vec![(None, true, "", with.clone())];
@@ -144,18 +194,18 @@ fn variants(
     let built = plans
         .into_iter()
         .enumerate()
-        .map(|(number, (effect, is_in, instead, plan))| {
+        .map(|(index, (effect, is_in, instead, plan))| {
             let lanes = LaneCount::native();
-            let renderer = match args.tier {
-                TierArg::Interpreted => {
+            let renderer = match tier {
+                PricedTier::Interpreted => {
                     Renderer::Interpreted(Interpreter::new(plan.structure.clone(), lanes))
                 }
-                TierArg::Auto | TierArg::Specialized => {
-                    eprintln!("renderer {} of {count}", number + 1);
-                    Renderer::Compiled(
-                        compile(&plan, lanes)
-                            .context("--tier interpreted measures without a compiler")?,
-                    )
+                PricedTier::Specialized => {
+                    report(Step::Compiling {
+                        renderer: index + 1,
+                        renderers: count,
+                    });
+                    Renderer::Compiled(compile(&plan, lanes)?)
                 }
             };
             let quality = hierarchy_quality(plan.data.triangle_count());
@@ -252,47 +302,4 @@ fn mean(images: &[Vec<[f32; 3]>], used: &dyn Fn(usize) -> bool) -> Vec<[f32; 3]>
         })
     };
     (0..images[0].len()).map(pixel).collect()
-}
-
-impl Price {
-    pub(crate) fn json(&self) -> Value {
-        json!({
-            "effect": self.effect.to_string(),
-            "in": self.is_in,
-            "instead": self.instead,
-            "time": self.time.median,
-            "time_ci": self.time.interval,
-            "flip": self.flip.value,
-            "flip_ci95": self.flip.ci95,
-            "relmse": self.relmse.value,
-            "relmse_ci95": self.relmse.ci95,
-        })
-    }
-}
-
-/// The list as a table.
-pub(crate) fn table(prices: &[Price]) -> String {
-    let mut text = format!(
-        "{:<22} {:>7} {:>18}  {:>17}  {:>19}  {}\n",
-        "effect", "time", "95 %", "FLIP", "relMSE", "compared with"
-    );
-    for price in prices {
-        let percent = |part: f64| format!("{:+.1} %", 100.0 * part);
-        text.push_str(&format!(
-            "{:<22} {:>7} {:>18}  {:>7.4} ± {:>7.4}  {:>8.1e} ± {:>8.1e}  {}\n",
-            price.effect.to_string(),
-            percent(price.time.median),
-            format!(
-                "{} … {}",
-                percent(price.time.interval[0]),
-                percent(price.time.interval[1])
-            ),
-            price.flip.value,
-            price.flip.ci95,
-            price.relmse.value,
-            price.relmse.ci95,
-            price.instead,
-        ));
-    }
-    text
 }
