@@ -6,7 +6,7 @@ use residual_render::alpha::AlphaTest;
 use residual_render::camera::AnyCamera;
 use residual_render::domain::tape::{Outputs, Record, Tape};
 use residual_render::domain::{Buffer, Domain};
-use residual_render::layer::Layers;
+use residual_render::layer::{Layer, Layers};
 use residual_render::program::{
     AlphaNode, BsdfNode, ColorNode, EmissionNode, ImageNode, InputNode, LightNode, NormalNode,
     Program, ScalarNode, SourceNode, Structure,
@@ -14,7 +14,7 @@ use residual_render::program::{
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Input, UvMap};
-use residual_render::tracer::TracerNode;
+use residual_render::tracer::{DebugView, TracerNode};
 use residual_scenegen::emit::{wgsl::wgsl_function, wgsl_module};
 
 /// Parses and validates; panics with naga's explanation and the text.
@@ -353,12 +353,11 @@ fn every_image() {
 #[test]
 fn every_light() {
     for light in lights() {
-        let text = wgsl_module(&structure(vec![], vec![light.clone()]));
+        let matte = program(BsdfNode::Diffuse { albedo: Input(0) });
+        let text = wgsl_module(&structure(vec![matte], vec![light.clone()]));
         no_dead_code(&text);
-        assert_eq!(
-            text.contains("fn light_0_background"),
-            light == LightNode::Environment
-        );
+        assert!(text.contains("shadow_contribution"));
+        assert_eq!(text.contains("fn miss"), light == LightNode::Environment);
     }
 }
 
@@ -373,9 +372,32 @@ fn every_camera_and_sampler() {
             });
             no_dead_code(&text);
             assert!(
-                !text.contains("light_pick"),
+                !text.contains("light") && !text.contains("fn miss"),
                 "a scene without lights picks none"
             );
+        }
+    }
+}
+
+#[test]
+fn every_tracer_and_layer() {
+    let tracers = [
+        (TracerNode::Path, [true, true]),
+        (TracerNode::AmbientOcclusion, [true, false]),
+        (TracerNode::Debug(DebugView::Normals), [false, false]),
+        (TracerNode::Debug(DebugView::Depth), [false, false]),
+    ];
+    for (tracer, [shadow, bounce]) in tracers {
+        for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
+            let text = wgsl_module(&Structure {
+                tracer,
+                layers,
+                ..everything()
+            });
+            no_dead_code(&text);
+            assert_eq!(text.contains("shadow_active"), shadow);
+            assert_eq!(text.contains("bounce_active"), bounce);
+            assert_eq!(text.contains("albedo: vec3f"), layers != Layers::NONE);
         }
     }
 }
@@ -408,7 +430,8 @@ fn constants_leave_a_short_program() {
         "indices",
         "normals",
         "if ",
-        "program_0_emission",
+        "shadow",
+        "seen",
         "program_0_covers",
     ] {
         assert!(!text.contains(absent), "{absent} is not called for\n{text}");

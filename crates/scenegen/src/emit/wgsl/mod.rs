@@ -16,11 +16,12 @@ use residual_render::program::{Program, Structure};
 
 use names::{buffer_name, type_name};
 use print::print;
-use record::Recorded;
+use record::{Outcome, Recorded};
 
 const HEADER: &str = "\
-// Printed by residual-scenegen from a scene's structure. Directions are world space and unit vectors, except
-// `dir` of a hit, which is the direction of the ray that arrived. `random` holds numbers in [0, 1).
+// Printed by residual-scenegen from a scene's structure. Directions are world space. A path is its ray (`org`, `dir`, a
+// unit vector), `throughput`, the density `pdf` of its direction, the sample that it belongs to (`pixel`, a hash, and
+// `index`) and its `depth`, which is 1 for the ray from the camera.
 ";
 
 const COPYSIGN: &str = "\
@@ -31,28 +32,19 @@ fn copysign(magnitude: f32, sign: f32) -> f32 {
 }
 ";
 
-/// The module of a scene: for each program `program_K_eval`, `_sample`, `_emission` and `_covers`; for each kind
-/// of light `light_K_sample` and `_background`; `light_pick`, `camera_ray`, `sampler_pixel` and `sampler_pair`.
-/// What the scene does not call for is not there.
+/// The module of a scene: `emit`, for each program `program_K_step` and `_covers`, and `miss`. What the scene does not
+/// call for is not there.
 pub fn wgsl_module(structure: &Structure) -> String {
     let mut module = Module::default();
-    for (number, program) in structure.programs.iter().enumerate() {
+    module.add(None, [record::emit(structure)]);
+    let outcome = Outcome::of(structure);
+    for (index, program) in structure.programs.iter().enumerate() {
         module.add(
-            Some(describe(number, program)),
-            record::program(number, program),
+            Some(describe(index, program)),
+            record::program(index, program, structure, outcome),
         );
     }
-    for (number, node) in structure.lights.iter().enumerate() {
-        module.add(
-            Some(format!("Light kind {number}: {node:?}")),
-            record::light(number, structure),
-        );
-    }
-    if !structure.lights.is_empty() {
-        module.add(None, [record::light_pick()]);
-    }
-    module.add(None, [record::camera(structure)]);
-    module.add(None, record::sampler(structure));
+    module.add(None, record::miss(structure));
     module.finish()
 }
 

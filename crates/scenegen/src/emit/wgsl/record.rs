@@ -1,18 +1,19 @@
-//! The functions of a scene, recorded. Directions are world space; `dir` is the direction of the ray that arrived.
+//! The functions of a scene, recorded: the steps of its tracer, and its alpha tests.
+//!
+//! Options of the tracer are parameters, so that none of them makes another module.
 
-use residual_render::bsdf::{Bsdf, BsdfSample, BsdfValue};
-use residual_render::camera::Camera;
-use residual_render::domain::tape::{Function, Outputs, Real, Record, Tape};
+use residual_render::domain::tape::{Function, Outputs, Record, Tape};
 use residual_render::domain::{Buffers, Domain};
-use residual_render::light::{self, LightSample};
-use residual_render::material::Material;
+use residual_render::layer::{Layer, Layers};
 use residual_render::math::Vec3;
+use residual_render::math::vec3::vec3;
 use residual_render::program::{
     AlphaNode, BoxedAlpha, BoxedMaterial, Interpreted, Program, Structure,
 };
-use residual_render::sampler::{SampleKey, Sampler};
+use residual_render::sampler::SampleKey;
 use residual_render::scene::Scene;
-use residual_render::surface::{Hit, Surface};
+use residual_render::surface::{Hit, Ray};
+use residual_render::tracer::{self, Features, Path, Settings, Step, Tracer};
 
 /// A recorded function with what is printed around it.
 pub(super) struct Recorded {
@@ -32,97 +33,170 @@ fn hit(tape: &Tape) -> Hit<Record<'_>> {
     }
 }
 
-fn components(v: Vec3<Real<'_>>) -> [Real<'_>; 3] {
-    [v.x, v.y, v.z]
-}
-
-/// Records a function of a program at a hit; `more` is given the surface and the unit direction `wo`.
-fn at_hit<'t>(
-    tape: &'t Tape,
-    material: &BoxedMaterial<'_, Record<'t>>,
-    more: impl FnOnce(
-        &Surface<Record<'t>>,
-        Vec3<Real<'t>>,
-        Option<Vec3<Real<'t>>>,
-        &dyn Bsdf<Record<'t>>,
-    ) -> Outputs<'t>,
-) -> Outputs<'t> {
+/// A path, as parameters.
+fn path(tape: &Tape) -> Path<Record<'_>> {
     let d = Record::new(tape);
-    let hit = hit(tape);
-    let dir = tape.vector("dir");
-    let mut surface = Surface::new(d, material.attributes(), &hit, dir);
-    let wo = -dir.normalize(d);
-    let shading = material.shade(d, &mut surface, wo);
-    more(
-        &surface,
-        surface.frame.to_local(d, wo),
-        shading.emission,
-        &shading.bsdf,
-    )
-}
-
-fn eval(number: usize, program: &Program) -> Recorded {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let outputs = at_hit(
-        &tape,
-        &BoxedMaterial::new(program),
-        |surface, wo, _, bsdf| {
-            let wi = surface.frame.to_local(d, tape.vector("wi"));
-            let BsdfValue { value, pdf } = bsdf.eval(d, surface, wo, wi);
-            Outputs::new().vector("value", value).real("pdf", pdf)
+    Path {
+        ray: Ray::unbounded(d, tape.vector("org"), tape.vector("dir")),
+        throughput: tape.vector("throughput"),
+        pdf: tape.real("pdf"),
+        key: SampleKey {
+            pixel: tape.word("pixel"),
+            index: tape.word("index"),
         },
-    );
-    Recorded {
-        function: tape.function(format!("program_{number}_eval"), outputs),
-        result: "BsdfValue",
-        comment: "f·cos towards the unit direction `wi`, and the density of sampling it."
-            .to_owned(),
+        depth: tape.word("depth"),
     }
 }
 
-fn sample(number: usize, program: &Program) -> Recorded {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let outputs = at_hit(
-        &tape,
-        &BoxedMaterial::new(program),
-        |surface, wo, _, bsdf| {
-            let random = components(tape.vector("random"));
-            let BsdfSample {
-                wi,
-                weight,
-                pdf,
-                delta,
-            } = bsdf.sample(d, surface, wo, random);
-            Outputs::new()
-                .vector("wi", surface.frame.to_world(wi).normalize(d))
-                .vector("weight", weight)
-                .real("pdf", pdf)
-                .truth("delta", delta)
-        },
-    );
-    Recorded {
-        function: tape.function(format!("program_{number}_sample"), outputs),
-        result: "BsdfSample",
-        comment: "A direction, from two numbers for the direction and one for the lobe.".to_owned(),
+/// The tracer's options that matter along a path, as parameters.
+fn settings(tape: &Tape) -> Settings<Record<'_>> {
+    let d = Record::new(tape);
+    Settings {
+        // These matter where a path begins.
+        image: [d.lit(1.0); 2],
+        seed: d.uint(0),
+        max_depth: tape.word("max_depth"),
+        roulette_from: tape.word("roulette_from"),
+        reach: tape.real("reach"),
     }
 }
 
-fn emission(number: usize, program: &Program) -> Option<Recorded> {
-    program.emission?;
+/// Whether the structure's tracer ever has a contribution, a shadow ray, a bounce at a hit: all programs return the
+/// same, so that one kernel can take over from another.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Outcome {
+    seen: bool,
+    shadow: bool,
+    bounce: bool,
+}
+
+impl Outcome {
+    /// Of all programs.
+    pub(super) fn of(structure: &Structure) -> Self {
+        let of_programs = structure.programs.iter().map(|program| {
+            with_step(&Tape::new(), structure, program, |step| Self {
+                seen: step.seen.is_some(),
+                shadow: step.shadow.is_some(),
+                bounce: step.bounce.is_some(),
+            })
+        });
+        of_programs.fold(Self::default(), |all, one| Self {
+            seen: all.seen | one.seen,
+            shadow: all.shadow | one.shadow,
+            bounce: all.bounce | one.bounce,
+        })
+    }
+}
+
+/// Records the step at a hit on a program.
+fn with_step<'t, R>(
+    tape: &'t Tape,
+    structure: &Structure,
+    program: &Program,
+    f: impl FnOnce(Step<Record<'t>>) -> R,
+) -> R {
+    let d = Record::new(tape);
+    let (hit, path) = (hit(tape), path(tape));
+    let scene = Interpreted::<Record<'_>>::new(structure, &Buffers::EMPTY);
+    let tracer = scene.tracer(settings(tape));
+    let material = BoxedMaterial::new(program);
+    f(tracer::shade(
+        d,
+        &tracer,
+        &path,
+        &hit,
+        &material,
+        scene.lights(),
+    ))
+}
+
+/// The step at a hit on a program; `None` where nothing ever comes of a hit.
+fn step(
+    index: usize,
+    program: &Program,
+    structure: &Structure,
+    outcome: Outcome,
+) -> Option<Recorded> {
+    let Outcome {
+        seen,
+        shadow,
+        bounce,
+    } = outcome;
+    if !(seen || shadow || bounce || structure.layers != Layers::NONE) {
+        return None;
+    }
     let tape = Tape::new();
-    let outputs = at_hit(&tape, &BoxedMaterial::new(program), |_, _, emission, _| {
-        Outputs::new().vector("radiance", emission.expect("the program emits"))
+    let d = Record::new(&tape);
+    let zero = d.lit(0.0);
+    let none = Vec3::splat(zero);
+    let outputs = with_step(&tape, structure, program, |step| {
+        let mut outputs = Outputs::new();
+        if seen {
+            outputs = outputs.vector("seen", step.seen.unwrap_or(none));
+        }
+        if let Some(features) = &step.features {
+            outputs = layers(outputs, features, structure.layers);
+        }
+        if shadow {
+            let (org, dir, tmax, contribution, active) = match step.shadow {
+                Some(s) => (s.ray.org, s.ray.dir, s.ray.tmax, s.contribution, s.active),
+                None => (none, none, zero, none, d.truth(false)),
+            };
+            outputs = outputs
+                .vector("shadow_org", org)
+                .vector("shadow_dir", dir)
+                .real("shadow_tmax", tmax)
+                .vector("shadow_contribution", contribution)
+                .truth("shadow_active", active);
+        }
+        if bounce {
+            let (org, dir, throughput, pdf, active) = match step.bounce {
+                Some(b) => (
+                    b.path.ray.org,
+                    b.path.ray.dir,
+                    b.path.throughput,
+                    b.path.pdf,
+                    b.active,
+                ),
+                None => (none, none, none, zero, d.truth(false)),
+            };
+            outputs = outputs
+                .vector("bounce_org", org)
+                .vector("bounce_dir", dir)
+                .vector("bounce_throughput", throughput)
+                .real("bounce_pdf", pdf)
+                .truth("bounce_active", active);
+        }
+        outputs
     });
     Some(Recorded {
-        function: tape.function(format!("program_{number}_emission"), outputs),
-        result: "",
-        comment: "Radiance emitted against `dir`.".to_owned(),
+        function: tape.function(format!("program_{index}_step"), outputs),
+        result: "Step",
+        comment: "What becomes of a path that hits a surface of this program.".to_owned(),
     })
 }
 
-fn alpha(number: usize, node: &AlphaNode) -> Recorded {
+/// The layers of a first vertex.
+fn layers<'t>(
+    mut outputs: Outputs<'t>,
+    features: &Features<Record<'t>>,
+    set: Layers,
+) -> Outputs<'t> {
+    let channels = features.channels(set);
+    for layer in set.iter().filter(|&layer| layer != Layer::SampleCount) {
+        let first = set.offset(layer) - Layers::RADIANCE;
+        outputs = match *channels[first..]
+            .first_chunk()
+            .unwrap_or(&[channels[first]; 3])
+        {
+            [x, y, z] if layer.channels().len() == 3 => outputs.vector(layer.name(), vec3(x, y, z)),
+            [x, ..] => outputs.real(layer.name(), x),
+        };
+    }
+    outputs
+}
+
+fn alpha(index: usize, node: &AlphaNode) -> Recorded {
     let tape = Tape::new();
     let d = Record::new(&tape);
     let hit = hit(&tape);
@@ -130,7 +204,7 @@ fn alpha(number: usize, node: &AlphaNode) -> Recorded {
     let covers = BoxedAlpha::new(node).covers(d, ray, &hit);
     Recorded {
         function: tape.function(
-            format!("program_{number}_covers"),
+            format!("program_{index}_covers"),
             Outputs::new().truth("covers", covers),
         ),
         result: "",
@@ -139,128 +213,68 @@ fn alpha(number: usize, node: &AlphaNode) -> Recorded {
 }
 
 /// The functions of a material program.
-pub(super) fn program(number: usize, program: &Program) -> Vec<Recorded> {
-    let always = [eval(number, program), sample(number, program)];
-    let alpha = program.alpha.as_ref().map(|node| alpha(number, node));
-    always
+pub(super) fn program(
+    index: usize,
+    program: &Program,
+    structure: &Structure,
+    outcome: Outcome,
+) -> Vec<Recorded> {
+    let alpha = program.alpha.as_ref().map(|node| alpha(index, node));
+    step(index, program, structure, outcome)
         .into_iter()
-        .chain(emission(number, program))
         .chain(alpha)
         .collect()
 }
 
-/// The functions of one kind of light.
-pub(super) fn light(number: usize, structure: &Structure) -> Vec<Recorded> {
-    let empty = Buffers::EMPTY;
+/// What rays that hit nothing see; nothing where the tracer sees nothing.
+pub(super) fn miss(structure: &Structure) -> Option<Recorded> {
     let tape = Tape::new();
     let d = Record::new(&tape);
-    let record = tape.word("record");
-    let from = tape.vector("point");
-    let random = components(tape.vector("random"));
-    let scene = Interpreted::<Record<'_>>::new(structure, &empty);
-    let LightSample {
-        wi,
-        position,
-        infinite,
-        radiance,
-        pdf,
-        delta,
-    } = scene.lights()[number].sample(d, record, from, random);
-    let outputs = Outputs::new()
-        .vector("wi", wi)
-        .vector("position", position)
-        .truth("infinite", infinite)
-        .vector("radiance", radiance)
-        .real("pdf", pdf)
-        .truth("delta", delta);
-    let sample = Recorded {
-        function: tape.function(format!("light_{number}_sample"), outputs),
-        result: "LightSample",
-        comment: "Samples the light with this record for a point.".to_owned(),
-    };
-    std::iter::once(sample)
-        .chain(background(number, structure))
-        .collect()
-}
-
-fn background(number: usize, structure: &Structure) -> Option<Recorded> {
-    let empty = Buffers::EMPTY;
-    let tape = Tape::new();
-    let dir = tape.vector("dir");
-    let scene = Interpreted::<Record<'_>>::new(structure, &empty);
-    let seen = scene.lights()[number].background(Record::new(&tape), dir)?;
-    let outputs = Outputs::new()
-        .vector("radiance", seen.radiance)
-        .real("pdf", seen.pdf);
-    Some(Recorded {
-        function: tape.function(format!("light_{number}_background"), outputs),
-        result: "Background",
-        comment: "What a ray in the unit direction `dir` that hits nothing sees.".to_owned(),
+    let path = path(&tape);
+    let scene = Interpreted::<Record<'_>>::new(structure, &Buffers::EMPTY);
+    let tracer = scene.tracer(settings(&tape));
+    let seen = tracer.on_miss(d, &path, scene.lights());
+    let mut outputs = Outputs::new();
+    let is_needed = seen.is_some() || structure.layers != Layers::NONE;
+    if let Some(seen) = seen {
+        outputs = outputs.vector("seen", seen);
+    }
+    if structure.layers != Layers::NONE {
+        let features = Features::of_miss(d, structure.layers, &path);
+        outputs = layers(outputs, &features, structure.layers);
+    }
+    is_needed.then(|| Recorded {
+        function: tape.function("miss", outputs),
+        result: "Miss",
+        comment: "What a path sees whose ray hits nothing.".to_owned(),
     })
 }
 
-/// The function that picks a light.
-pub(super) fn light_pick() -> Recorded {
+/// Where paths begin.
+pub(super) fn emit(structure: &Structure) -> Recorded {
     let tape = Tape::new();
-    let light::Pick {
-        kind,
-        record,
-        probability,
-    } = light::pick(Record::new(&tape), tape.real("random"));
+    let d = Record::new(&tape);
+    let pixel = ["x", "y"].map(|name| tape.word(name));
+    let sample = tape.word("sample");
+    let scene = Interpreted::<Record<'_>>::new(structure, &Buffers::EMPTY);
+    let tracer = scene.tracer(Settings {
+        image: ["width", "height"].map(|name| tape.real(name)),
+        seed: tape.word("seed"),
+        max_depth: d.uint(0),
+        roulette_from: d.uint(0),
+        reach: d.lit(0.0),
+    });
+    let path = tracer.on_emit(d, scene.camera(), pixel, sample);
     let outputs = Outputs::new()
-        .word("kind", kind)
-        .word("record", record)
-        .real("probability", probability);
+        .vector("org", path.ray.org)
+        .vector("dir", path.ray.dir)
+        .word("pixel", path.key.pixel);
     Recorded {
-        function: tape.function("light_pick", outputs),
-        result: "LightPick",
-        comment: "Picks a light: the number of its kind, its record, and the probability."
-            .to_owned(),
-    }
-}
-
-/// The camera's function.
-pub(super) fn camera(structure: &Structure) -> Recorded {
-    let tape = Tape::new();
-    let film = [tape.real("x"), tape.real("y")];
-    let ray = structure.camera.ray(Record::new(&tape), film);
-    let outputs = Outputs::new()
-        .vector("org", ray.org)
-        .vector("dir", ray.dir)
-        .real("tmax", ray.tmax);
-    Recorded {
-        function: tape.function("camera_ray", outputs),
-        result: "Ray",
+        function: tape.function("emit", outputs),
+        result: "CameraPath",
         comment: format!(
-            "{:?}: the ray through film coordinates in [-1, 1], x to the right, y up.",
-            structure.camera
+            "{:?}, {:?}: a path of throughput 1 through a place of the pixel at (x, y).",
+            structure.camera, structure.sampler
         ),
     }
-}
-
-/// The sampler's functions.
-pub(super) fn sampler(structure: &Structure) -> [Recorded; 2] {
-    let tape = Tape::new();
-    let [x, y, seed] = ["x", "y", "seed"].map(|name| tape.word(name));
-    let d = Record::new(&tape);
-    let key = SampleKey::new(d, x, y, d.uint(0), seed);
-    let key = Recorded {
-        function: tape.function("sampler_pixel", Outputs::new().word("pixel", key.pixel)),
-        result: "",
-        comment: "The hash of pixel and seed.".to_owned(),
-    };
-    let tape = Tape::new();
-    let [pixel, index, dimension] = ["pixel", "index", "dimension"].map(|name| tape.word(name));
-    let pair = structure
-        .sampler
-        .pair(Record::new(&tape), SampleKey { pixel, index }, dimension);
-    let outputs = Outputs::new()
-        .real("first", pair[0])
-        .real("second", pair[1]);
-    let pair = Recorded {
-        function: tape.function("sampler_pair", outputs),
-        result: "Pair",
-        comment: format!("{:?}: two numbers in [0, 1).", structure.sampler),
-    };
-    [key, pair]
 }
