@@ -184,12 +184,7 @@ fn the_heat_map_is_of_the_visits_of_camera_rays() {
     let plan = planned(&two_squares(), TracerNode::Debug(DebugView::TraversalCost));
     let bvh = AnyBvh::build(&plan.data, LaneCount::native(), BuildQuality::Best);
     let visits = [LEFT, BESIDE].map(|[x, y]| {
-        let ray = residual_bvh::Ray {
-            org: [x, y, 2.0],
-            tmin: 0.0,
-            dir: [0.0, 0.0, -1.0],
-            tmax: f32::MAX,
-        };
+        let ray = residual_bvh::Ray::unbounded([x, y, 2.0], [0.0, 0.0, -1.0]);
         let mut visits = [0];
         bvh.visits(&[ray], &mut visits, None);
         visits[0]

@@ -1,8 +1,9 @@
 //! Bounds the depth of the binary tree, and with it that of the traversal's stack.
 //!
-//! Reinsertion minimises area, not depth: triangles in a geometric cascade can become a list. Where a subtree would reach too deep it is followed for as long as
-//! everything below could still be arranged within the limit, and then replaced by median splits
-//! of its references in their present order, which is a spatial one.
+//! Reinsertion minimises area, not depth: triangles in a geometric cascade can become a list. Where a
+//! subtree would reach too deep it is followed for as long as everything below could still be
+//! arranged within the limit, and then replaced by median splits of its references in their present
+//! order, which is a spatial one.
 
 use std::ops::Range;
 
