@@ -5,6 +5,9 @@
 
 use super::error::{Fault, MAKE_SMALLER};
 
+/// Bytes of each kind of decoded data.
+const LIMIT: u64 = 1 << 30;
+
 /// Bytes that may still be allocated.
 #[derive(Debug)]
 pub(super) struct Budget {
@@ -16,7 +19,7 @@ impl Budget {
     /// For vertices, indices and instances.
     pub(super) fn geometry() -> Self {
         Self {
-            left: 1 << 30,
+            left: LIMIT,
             what: "geometry",
         }
     }
@@ -24,7 +27,7 @@ impl Budget {
     /// For texels.
     pub(super) fn images() -> Self {
         Self {
-            left: 1 << 30,
+            left: LIMIT,
             what: "images",
         }
     }

@@ -1,21 +1,10 @@
 //! The environment image that the user gave.
 
-use std::path::PathBuf;
-
-use super::error::{Fault, ImportError, Warnings};
+use super::error::{Fault, ImportError};
+use super::options::EnvironmentOptions;
+use super::warnings::Warnings;
 use super::{files, images};
 use crate::desc::{EnvironmentDesc, SceneDesc, Texels};
-
-/// Light from infinitely far away, from a latitude-longitude image.
-#[derive(Debug, Clone)]
-pub struct EnvironmentOptions {
-    /// A `.hdr`, `.exr` or 8-bit image; the latter is decoded from sRGB.
-    pub path: PathBuf,
-    /// Factor on radiance.
-    pub strength: f32,
-    /// Turn about +Y.
-    pub rotation_degrees: f32,
-}
 
 const ADVICE: &str = "give a latitude-longitude image as .hdr, .exr or .png";
 

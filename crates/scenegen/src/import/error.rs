@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::desc::{Dismissed, Warning};
-use crate::effect::Effect;
+use crate::desc::Warning;
 
 /// Why a scene was not imported.
 #[derive(Debug, thiserror::Error)]
@@ -44,7 +43,7 @@ pub enum ImportError {
         /// What to do about it.
         advice: &'static str,
     },
-    /// There were warnings, and [`super::ImportOptions::strict`] turns them into an error.
+    /// There were warnings, and [`ImportOptions::strict`](super::options::ImportOptions::strict) turns them into an error.
     #[error("{}: {} with --strict:{}", file.display(), count(warnings), list(warnings))]
     Strict {
         /// The file.
@@ -111,75 +110,5 @@ impl Fault {
             problem: self.problem,
             advice: self.advice,
         }
-    }
-}
-
-/// More warnings than this are only counted: a hostile file can cause millions.
-const MAX_WARNINGS: usize = 1000;
-
-/// Warnings as they come up.
-#[derive(Debug, Default)]
-pub(super) struct Warnings {
-    list: Vec<Warning>,
-    omitted: usize,
-    dismissed: Vec<Dismissed>,
-}
-
-impl Warnings {
-    /// Records a warning, each once.
-    pub(super) fn push(&mut self, place: impl Into<String>, message: impl Into<String>) {
-        if self.list.len() >= MAX_WARNINGS {
-            self.omitted += 1;
-            return;
-        }
-        let warning = Warning {
-            place: place.into(),
-            message: message.into(),
-        };
-        if !self.list.contains(&warning) {
-            self.list.push(warning);
-        }
-    }
-
-    /// Records that something changes nothing, each once.
-    pub(super) fn dismiss(
-        &mut self,
-        effect: Option<Effect>,
-        place: impl Into<String>,
-        reason: impl Into<String>,
-    ) {
-        let dismissed = Dismissed {
-            effect,
-            place: place.into(),
-            reason: reason.into(),
-        };
-        if self.dismissed.len() < MAX_WARNINGS && !self.dismissed.contains(&dismissed) {
-            self.dismissed.push(dismissed);
-        }
-    }
-
-    /// What was dismissed, in order.
-    pub(super) fn take_dismissed(&mut self) -> Vec<Dismissed> {
-        std::mem::take(&mut self.dismissed)
-    }
-
-    /// All warnings, in order.
-    pub(super) fn into_vec(mut self) -> Vec<Warning> {
-        if self.omitted > 0 {
-            let message = format!("{} more warnings are left out", self.omitted);
-            self.list.push(Warning {
-                place: "warnings".into(),
-                message,
-            });
-        }
-        self.list
-    }
-}
-
-/// A JSON path with the element's name, such as `materials/3 "Glass"`.
-pub(super) fn place(array: &str, index: usize, name: Option<&str>) -> String {
-    match name {
-        Some(name) => format!("{array}/{index} \"{}\"", name.escape_debug()),
-        None => format!("{array}/{index}"),
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::error::Warnings;
+use super::warnings::Warnings;
 use crate::desc::{InstanceDesc, MeshDesc};
 
 /// The instance, or `None`, after a warning, where nothing of it can be seen.

@@ -1,14 +1,22 @@
-//! Importers: scene files of others as a [`SceneDesc`].
+//! Importers: scene files of others as a [`SceneDesc`], the first step of the chain file → description →
+//! plan → program.
 //!
-//! First step of the chain file → description → effects → plan → program. `.gltf` and `.glb` are read by
-//! the `gltf_*` modules, `.obj` with its `.mtl` by the `obj*` and `mtl` ones; both meet in `triangles`, `images`
-//! and `instances`. Files are not trusted: every index and size is checked before it is used, decoded
-//! data is charged to a `budget`, and a malformed file ends in an [`ImportError`], never in a panic.
-//! What a file asks for and we do not render is a warning; under [`ImportOptions::strict`] an error.
+//! ```text
+//! .gltf, .glb ─ gltf ─┬─ RawMesh ─ mesh ─▶ MeshDesc ─ instances ─▶ InstanceDesc ─┐
+//! .obj, .mtl ── obj ──┼─ MaterialDesc, TextureDesc; lights and cameras of glTF ──┼▶ SceneDesc ─ validate
+//!                     └─ ImageRequest ─ images ─▶ ImageDesc ─────────────────────┤
+//! the user's image ──── environment ─▶ EnvironmentDesc ──────────────────────────┘
+//! ```
+//!
+//! Each format has a room; what both fill lies beside them. Files are not trusted: every index and size is
+//! checked before it is used, decoded data is charged to a `budget`, and a malformed file ends in an
+//! [`ImportError`], never in a panic. What a file asks for and we do not render is a warning; under
+//! [`ImportOptions::strict`] an error.
 
 use std::path::Path;
 
 use self::error::Fault;
+use self::warnings::Warnings;
 use crate::desc::SceneDesc;
 
 mod budget;
@@ -21,24 +29,17 @@ mod images;
 mod instances;
 mod mesh;
 mod obj;
+mod options;
 pub(crate) mod texture_uses;
+mod warnings;
 
-pub use environment::EnvironmentOptions;
 pub use error::ImportError;
-pub(crate) use files::external_files;
-
-/// What the user wants besides the file.
-#[derive(Debug, Clone, Default)]
-pub struct ImportOptions {
-    /// Light from infinitely far away.
-    pub environment: Option<EnvironmentOptions>,
-    /// Whether warnings are errors.
-    pub strict: bool,
-}
+pub(crate) use gltf::external_files;
+pub use options::{EnvironmentOptions, ImportOptions};
 
 /// Reads a scene; its extension says how.
 pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportError> {
-    let mut warnings = error::Warnings::default();
+    let mut warnings = Warnings::default();
     let extension = path
         .extension()
         .unwrap_or_default()

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::error::Warnings;
+use super::warnings::Warnings;
 use crate::desc::{ColorInput, MaterialDesc, ScalarInput, SurfaceDesc, TextureUse};
 
 /// All uses of textures in a material, in the order of its fields.

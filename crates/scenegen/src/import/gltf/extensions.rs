@@ -6,57 +6,70 @@ use std::path::Path;
 use gltf::json::{Root, Value};
 use serde_json::Map;
 
-use crate::import::error::{ImportError, Warnings};
+use crate::import::error::ImportError;
+use crate::import::warnings::Warnings;
 
-/// Extensions whose effect is imported.
-const SUPPORTED: &[&str] = &[
-    "EXT_mesh_gpu_instancing",
-    "EXT_texture_webp",
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-];
+/// Another material model, older than the extensions of metallic-roughness.
+const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// Extensions without an effect on a still image.
-const WITHOUT_EFFECT: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld", "KHR_animation_pointer"];
+/// What becomes of an extension.
+enum Support {
+    /// Its effect is imported.
+    Imported,
+    /// It has no effect on a still image.
+    WithoutEffect,
+    /// An effect of materials that is not rendered, and is there where this member is not 0.
+    MaterialSwitch(&'static str),
+    /// Not rendered, and whoever comes upon its use says so.
+    ReportedWhereUsed,
+    /// None of these.
+    Unknown,
+}
 
-/// Material extensions that are not rendered, with the member that switches them on.
-const MATERIAL_SWITCHES: &[(&str, &str)] = &[
-    ("KHR_materials_anisotropy", "anisotropyStrength"),
-    ("KHR_materials_clearcoat", "clearcoatFactor"),
-    (
-        "KHR_materials_diffuse_transmission",
-        "diffuseTransmissionFactor",
-    ),
-    ("KHR_materials_dispersion", "dispersion"),
-    ("KHR_materials_iridescence", "iridescenceFactor"),
-    ("KHR_materials_sheen", "sheenColorFactor"),
-];
-
-/// Extensions about which the places that use them warn, so that the root need not.
-const REPORTED_IN_PLACE: &[&str] = &[
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_node_visibility",
-    "KHR_texture_basisu",
-    "MSFT_texture_dds",
-];
+impl Support {
+    fn of(extension: &str) -> Self {
+        match extension {
+            "EXT_mesh_gpu_instancing"
+            | "EXT_texture_webp"
+            | "KHR_lights_punctual"
+            | "KHR_materials_emissive_strength"
+            | "KHR_materials_ior"
+            | "KHR_materials_specular"
+            | "KHR_materials_transmission"
+            | "KHR_materials_unlit"
+            | "KHR_materials_volume"
+            | "KHR_mesh_quantization"
+            | "KHR_texture_transform" => Self::Imported,
+            "KHR_xmp" | "KHR_xmp_json_ld" | "KHR_animation_pointer" => Self::WithoutEffect,
+            "KHR_materials_anisotropy" => Self::MaterialSwitch("anisotropyStrength"),
+            "KHR_materials_clearcoat" => Self::MaterialSwitch("clearcoatFactor"),
+            "KHR_materials_diffuse_transmission" => {
+                Self::MaterialSwitch("diffuseTransmissionFactor")
+            }
+            "KHR_materials_dispersion" => Self::MaterialSwitch("dispersion"),
+            "KHR_materials_iridescence" => Self::MaterialSwitch("iridescenceFactor"),
+            "KHR_materials_sheen" => Self::MaterialSwitch("sheenColorFactor"),
+            SPECULAR_GLOSSINESS
+            | "KHR_node_visibility"
+            | "KHR_texture_basisu"
+            | "MSFT_texture_dds" => Self::ReportedWhereUsed,
+            _ => Self::Unknown,
+        }
+    }
+}
 
 /// Refuses a file that cannot be shown without an extension that we lack.
 pub(super) fn check_required(root: &Root, file: &Path) -> Result<(), ImportError> {
     for extension in &root.extensions_required {
-        if !SUPPORTED.contains(&extension.as_str()) && !WITHOUT_EFFECT.contains(&extension.as_str())
-        {
-            return Err(ImportError::UnsupportedExtension {
-                file: file.to_owned(),
-                extension: extension.clone(),
-                advice: advice(extension),
-            });
+        match Support::of(extension) {
+            Support::Imported | Support::WithoutEffect => {}
+            Support::MaterialSwitch(_) | Support::ReportedWhereUsed | Support::Unknown => {
+                return Err(ImportError::UnsupportedExtension {
+                    file: file.to_owned(),
+                    extension: extension.clone(),
+                    advice: advice(extension),
+                });
+            }
         }
     }
     Ok(())
@@ -67,7 +80,7 @@ fn advice(extension: &str) -> &'static str {
         "EXT_meshopt_compression" | "KHR_meshopt_compression" | "KHR_draco_mesh_compression" => {
             "decompress it first, for example with `gltf-transform copy in.glb out.glb`"
         }
-        "KHR_materials_pbrSpecularGlossiness" => {
+        SPECULAR_GLOSSINESS => {
             "convert it first, for example with `gltf-transform metalrough in.glb out.glb`"
         }
         "KHR_texture_basisu" => "convert its textures to PNG, JPEG or WebP",
@@ -79,11 +92,8 @@ fn advice(extension: &str) -> &'static str {
 pub(super) fn warn_about_root(root: &Root, warnings: &mut Warnings) {
     let used_in_place = used_in_place(root);
     for extension in &root.extensions_used {
-        let known = SUPPORTED.contains(&extension.as_str())
-            || WITHOUT_EFFECT.contains(&extension.as_str())
-            || REPORTED_IN_PLACE.contains(&extension.as_str())
-            || MATERIAL_SWITCHES.iter().any(|(name, _)| name == extension);
-        if !known && !used_in_place.contains(extension.as_str()) {
+        let is_unknown = matches!(Support::of(extension), Support::Unknown);
+        if is_unknown && !used_in_place.contains(extension.as_str()) {
             warnings.push(
                 "extensionsUsed",
                 format!("{extension} is not supported and ignored"),
@@ -121,23 +131,23 @@ pub(super) fn warn_about_material(
     warnings: &mut Warnings,
 ) {
     for (extension, content) in others {
-        let effective = match MATERIAL_SWITCHES.iter().find(|(name, _)| name == extension) {
-            Some((_, switch)) => content.get(switch).is_some_and(is_not_zero),
-            None => true,
+        let is_effective = match Support::of(extension) {
+            Support::MaterialSwitch(member) => content.get(member).is_some_and(is_not_zero),
+            Support::Imported
+            | Support::WithoutEffect
+            | Support::ReportedWhereUsed
+            | Support::Unknown => true,
         };
-        if effective {
-            let message = match extension.as_str() {
-                "KHR_materials_pbrSpecularGlossiness" => {
-                    "KHR_materials_pbrSpecularGlossiness is not supported; the metallic-roughness values are used"
-                        .into()
-                }
-                _ => format!("{extension} is not supported; rendered without it"),
-            };
-            warnings.push(place, message);
-        } else {
+        if !is_effective {
             let reason = format!("{extension} is there, and its factor is 0");
             warnings.dismiss(None, place, reason);
+            continue;
         }
+        let instead = match extension.as_str() {
+            SPECULAR_GLOSSINESS => "the metallic-roughness values are used",
+            _ => "rendered without it",
+        };
+        warnings.push(place, format!("{extension} is not supported; {instead}"));
     }
 }
 

@@ -1,26 +1,24 @@
-//! KHR_lights_punctual and cameras, placed in the world.
+//! KHR_lights_punctual, placed in the world.
 
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use glam::DVec3;
-use gltf::json::camera::Type as CameraType;
-use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type as LightType};
+use gltf::json::Index;
+use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type};
 use gltf::json::validation::Checked;
-use gltf::json::{Camera, Index};
 
-use super::document::{Document, get};
-use super::nodes::{Placed, rotation_of};
-use crate::desc::{CameraDesc, LightDesc, LightKind, Projection};
-use crate::import::error::{Fault, Warnings, place};
-
-/// The vertical field of view where a file gives an impossible one, in radians.
-const DEFAULT_YFOV: f32 = FRAC_PI_4;
+use super::document::Document;
+use super::lookup::{get, place};
+use super::nodes::PlacedNode;
+use crate::desc::{LightDesc, LightKind};
+use crate::import::error::Fault;
+use crate::import::warnings::Warnings;
 
 /// The light of a node; `None`, after a warning, where it cannot shine.
-pub(super) fn light(
+pub(super) fn read(
     document: &Document,
     index: Index<Light>,
-    placed: &Placed<'_>,
+    placed: &PlacedNode<'_>,
     warnings: &mut Warnings,
 ) -> Result<Option<LightDesc>, Fault> {
     let extension = document
@@ -49,8 +47,8 @@ pub(super) fn light(
         .map(|axis| axis.as_vec3().normalize());
     let kind = match (&light.type_, direction) {
         (Checked::Invalid, _) => return Err(Fault::new(at, "has an unknown type")),
-        (Checked::Valid(LightType::Point), _) => LightKind::Point { position },
-        (Checked::Valid(LightType::Spot), Some(direction)) => {
+        (Checked::Valid(Type::Point), _) => LightKind::Point { position },
+        (Checked::Valid(Type::Spot), Some(direction)) => {
             let (inner, outer) = cone(light, &at, warnings);
             LightKind::Spot {
                 position,
@@ -59,10 +57,10 @@ pub(super) fn light(
                 outer,
             }
         }
-        (Checked::Valid(LightType::Directional), Some(direction)) => {
+        (Checked::Valid(Type::Directional), Some(direction)) => {
             LightKind::Directional { direction }
         }
-        (Checked::Valid(LightType::Spot | LightType::Directional), None) => {
+        (Checked::Valid(Type::Spot | Type::Directional), None) => {
             warnings.push(
                 &*placed.place,
                 "the transform leaves the light no direction; it is left out",
@@ -126,60 +124,4 @@ fn cone(light: &Light, at: &str, warnings: &mut Warnings) -> (f32, f32) {
         format!("innerConeAngle {inner} is not in [0, outerConeAngle); {valid_inner} is used"),
     );
     (valid_inner, valid_outer)
-}
-
-/// The camera of a node; `None`, after a warning, where it sees nothing.
-pub(super) fn camera(
-    document: &Document,
-    index: Index<Camera>,
-    placed: &Placed<'_>,
-    warnings: &mut Warnings,
-) -> Result<Option<CameraDesc>, Fault> {
-    let camera = get(&document.root.cameras, index, "cameras", &placed.place)?;
-    let at = place("cameras", index.value(), camera.name.as_deref());
-    let projection = match (&camera.type_, &camera.perspective, &camera.orthographic) {
-        (Checked::Valid(CameraType::Perspective), Some(perspective), _) => {
-            let mut yfov = perspective.yfov;
-            if !(yfov > 0.0 && yfov < PI) {
-                warnings.push(at, format!("yfov {yfov} is not in (0, π); π/4 is used"));
-                yfov = DEFAULT_YFOV;
-            }
-            Projection::Perspective { yfov }
-        }
-        (Checked::Valid(CameraType::Orthographic), _, Some(orthographic)) => {
-            let mut ymag = orthographic.ymag.abs();
-            if !(ymag > 0.0 && ymag.is_finite()) {
-                warnings.push(
-                    at,
-                    format!("ymag {ymag} is not a positive number; 1 is used"),
-                );
-                ymag = 1.0;
-            }
-            Projection::Orthographic { ymag }
-        }
-        (Checked::Valid(_), _, _) => {
-            return Err(Fault::new(at, "lacks the object that its type names"));
-        }
-        (Checked::Invalid, _, _) => return Err(Fault::new(at, "has an unknown type")),
-    };
-    let position = placed.world.translation.as_vec3();
-    let Some(rotation) = rotation_of(&placed.world).filter(|_| position.is_finite()) else {
-        warnings.push(
-            &*placed.place,
-            "the transform leaves the camera no orientation; it is left out",
-        );
-        return Ok(None);
-    };
-    let name = placed
-        .node
-        .name
-        .clone()
-        .or_else(|| camera.name.clone())
-        .unwrap_or_else(|| placed.name.clone());
-    Ok(Some(CameraDesc {
-        name,
-        position,
-        rotation: rotation.as_quat().normalize(),
-        projection,
-    }))
 }

@@ -1,13 +1,35 @@
-//! glTF 2.0 files.
+//! glTF 2.0 files: nodes are walked, and what they show is read when it is first asked for.
+//!
+//! ```text
+//! file ─ glb, root ─▶ Document ─ nodes ─▶ PlacedNode ─┬─ meshes ─ primitives ─ accessors ─▶ RawMesh
+//!             (JSON, buffers)                         ├─ materials ─ material ─ surface ─▶ MaterialDesc
+//!                                                     │   └─ textures ─ images ─▶ TextureDesc, ImageRequest
+//!                                                     └─ lights, cameras, instancing
+//! ```
 
 mod accessors;
+mod cameras;
 mod document;
+mod elements;
 mod extensions;
+mod external_files;
+mod glb;
+mod images;
+mod instancing;
 mod lights;
+mod lookup;
+mod material;
 mod materials;
+mod members;
+mod meshes;
 mod nodes;
 mod primitives;
+mod root;
 mod scene;
+mod surface;
+mod texture_reference;
 mod textures;
+mod uri;
 
+pub(crate) use external_files::external_files;
 pub(super) use scene::import;

@@ -1,13 +1,16 @@
 //! The node hierarchy: from a scene's roots to world transforms, without recursion.
 
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::json::{Index, Node, Scene};
 
-use super::document::{Document, get};
-use crate::import::error::{Fault, Warnings, place};
+use super::document::Document;
+use super::extensions;
+use super::lookup::{get, place};
+use crate::import::error::Fault;
+use crate::import::warnings::Warnings;
 
 /// A node of the scene with its world transform.
-pub(super) struct Placed<'a> {
+pub(super) struct PlacedNode<'a> {
     /// The node.
     pub(super) node: &'a Node,
     /// Name for the scene.
@@ -22,23 +25,19 @@ pub(super) struct Placed<'a> {
 pub(super) fn flatten<'a>(
     document: &'a Document,
     warnings: &mut Warnings,
-) -> Result<Vec<Placed<'a>>, Fault> {
+) -> Result<Vec<PlacedNode<'a>>, Fault> {
     let root = &document.root;
     let mut roots = roots(document)?;
     roots.reverse();
-    let mut stack: Vec<(usize, DAffine3)> = roots
+    let mut stack: Vec<(Index<Node>, DAffine3)> = roots
         .into_iter()
         .map(|node| (node, DAffine3::IDENTITY))
         .collect();
     let mut visited = vec![false; root.nodes.len()];
     let mut placed = Vec::new();
     while let Some((index, parent)) = stack.pop() {
-        let node = get(
-            &root.nodes,
-            Index::<Node>::new(index as u32),
-            "nodes",
-            "scene",
-        )?;
+        let node = get(&root.nodes, index, "nodes", "scene")?;
+        let index = index.value();
         let place = place("nodes", index, node.name.as_deref());
         // A second visit could only end in a cycle or, with nodes shared level by level, in 2ⁿ instances.
         if std::mem::replace(&mut visited[index], true) {
@@ -50,18 +49,18 @@ pub(super) fn flatten<'a>(
         let world = parent * local(node, &place, warnings);
         for &child in node.children.iter().flatten().rev() {
             get(&root.nodes, child, "nodes", &place)?;
-            stack.push((child.value(), world));
+            stack.push((child, world));
         }
-        if let Some(extensions) = &node.extensions {
-            super::extensions::warn_about_others(
-                &extensions.others,
+        if let Some(used) = &node.extensions {
+            extensions::warn_about_others(
+                &used.others,
                 &["EXT_mesh_gpu_instancing"],
                 &place,
                 warnings,
             );
         }
         let name = node.name.clone().unwrap_or_else(|| format!("node {index}"));
-        placed.push(Placed {
+        placed.push(PlacedNode {
             node,
             name,
             place,
@@ -71,14 +70,14 @@ pub(super) fn flatten<'a>(
     Ok(placed)
 }
 
-fn roots(document: &Document) -> Result<Vec<usize>, Fault> {
+fn roots(document: &Document) -> Result<Vec<Index<Node>>, Fault> {
     let root = &document.root;
     let scene: Option<&Scene> = match root.scene {
         Some(index) => Some(get(&root.scenes, index, "scenes", "scene")?),
         None => root.scenes.first(),
     };
     if let Some(scene) = scene {
-        return Ok(scene.nodes.iter().map(|node| node.value()).collect());
+        return Ok(scene.nodes.clone());
     }
     let mut is_child = vec![false; root.nodes.len()];
     for child in root
@@ -86,12 +85,13 @@ fn roots(document: &Document) -> Result<Vec<usize>, Fault> {
         .iter()
         .flat_map(|node| node.children.iter().flatten())
     {
-        if let Some(flag) = is_child.get_mut(child.value()) {
-            *flag = true;
+        if let Some(is_child) = is_child.get_mut(child.value()) {
+            *is_child = true;
         }
     }
     Ok((0..root.nodes.len())
         .filter(|&index| !is_child[index])
+        .map(|index| Index::new(index as u32))
         .collect())
 }
 
@@ -124,14 +124,4 @@ fn local(node: &Node, at: &str, warnings: &mut Warnings) -> DAffine3 {
         rotation,
         vector(node.translation, DVec3::ZERO),
     )
-}
-
-/// The rotation of a transform that may also scale and shear; `None` where the view axis or the up axis
-/// collapses.
-pub(super) fn rotation_of(world: &DAffine3) -> Option<DQuat> {
-    let back = world.matrix3.z_axis.try_normalize()?;
-    let up = world.matrix3.y_axis;
-    let up = (up - back * up.dot(back)).try_normalize()?;
-    let rotation = DQuat::from_mat3(&DMat3::from_cols(up.cross(back), up, back));
-    rotation.is_finite().then(|| rotation.normalize())
 }

@@ -6,8 +6,18 @@ use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index};
 
 use super::accessors::Accessors;
-use crate::import::error::{Fault, Warnings};
+use super::extensions;
+use crate::import::error::Fault;
 use crate::import::mesh::RawMesh;
+use crate::import::warnings::Warnings;
+
+/// How the corners of triangles follow one another.
+#[derive(Clone, Copy)]
+enum Topology {
+    List,
+    Strip,
+    Fan,
+}
 
 /// Reads a primitive; `None`, after a warning, where it has nothing to render.
 pub(super) fn read(
@@ -16,20 +26,19 @@ pub(super) fn read(
     at: &str,
     warnings: &mut Warnings,
 ) -> Result<Option<RawMesh>, Fault> {
-    if let Some(extensions) = &primitive.extensions {
-        super::extensions::warn_about_others(&extensions.others, &[], at, warnings);
+    if let Some(used) = &primitive.extensions {
+        extensions::warn_about_others(&used.others, &[], at, warnings);
     }
-    let mode = match primitive.mode {
-        Checked::Valid(mode) => mode,
+    let topology = match primitive.mode {
+        Checked::Valid(Mode::Triangles) => Topology::List,
+        Checked::Valid(Mode::TriangleStrip) => Topology::Strip,
+        Checked::Valid(Mode::TriangleFan) => Topology::Fan,
+        Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) => {
+            warnings.push(at, "points and lines are not rendered");
+            return Ok(None);
+        }
         Checked::Invalid => return Err(Fault::new(format!("{at}/mode"), "is unknown")),
     };
-    if matches!(
-        mode,
-        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
-    ) {
-        warnings.push(at, "points and lines are not rendered");
-        return Ok(None);
-    }
     if primitive
         .targets
         .as_ref()
@@ -81,16 +90,16 @@ pub(super) fn read(
     let out_of_range = corners
         .iter()
         .position(|&corner| corner as usize >= positions.len());
-    if let Some(position) = out_of_range {
+    if let Some(corner) = out_of_range {
         let problem = format!(
-            "index {} at {position} is beyond the {} vertices",
-            corners[position],
+            "index {} at {corner} is beyond the {} vertices",
+            corners[corner],
             positions.len()
         );
         return Err(Fault::new(format!("{at}/indices"), problem));
     }
     accessors.budget.charge(corners.len() as u64, 12, at)?;
-    let triangles = assemble(mode, &corners, at, warnings);
+    let triangles = assemble(topology, &corners, at, warnings);
     Ok(Some(RawMesh {
         positions,
         normals,
@@ -134,9 +143,14 @@ impl Attributes<'_, '_> {
 }
 
 /// Triangles of a list, strip or fan, by the equations of glTF 2.0 section 3.7.2.1.
-fn assemble(mode: Mode, corners: &[u32], at: &str, warnings: &mut Warnings) -> Vec<[u32; 3]> {
-    match mode {
-        Mode::Triangles => {
+fn assemble(
+    topology: Topology,
+    corners: &[u32],
+    at: &str,
+    warnings: &mut Warnings,
+) -> Vec<[u32; 3]> {
+    match topology {
+        Topology::List => {
             let (triangles, rest) = corners.as_chunks::<3>();
             if !rest.is_empty() {
                 warnings.push(
@@ -146,17 +160,16 @@ fn assemble(mode: Mode, corners: &[u32], at: &str, warnings: &mut Warnings) -> V
             }
             triangles.to_vec()
         }
-        Mode::TriangleStrip => corners
+        Topology::Strip => corners
             .windows(3)
             .enumerate()
             .map(|(i, window)| [window[0], window[1 + i % 2], window[2 - i % 2]])
             .collect(),
-        Mode::TriangleFan => {
+        Topology::Fan => {
             let rim = corners.get(1..).unwrap_or_default();
             rim.windows(2)
                 .map(|edge| [edge[0], edge[1], corners[0]])
                 .collect()
         }
-        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
     }
 }

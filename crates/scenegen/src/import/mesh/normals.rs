@@ -2,8 +2,9 @@
 
 use glam::{DVec3, Vec3};
 
+use super::vertices::gather_vertices;
 use crate::desc::MeshDesc;
-use crate::import::error::Warnings;
+use crate::import::warnings::Warnings;
 
 /// The normal of a triangle's front, in f64 so that slivers and tiny triangles have one; `None` without area.
 pub(super) fn face_normal(positions: &[Vec3], corners: [u32; 3]) -> Option<Vec3> {
@@ -15,30 +16,16 @@ pub(super) fn face_normal(positions: &[Vec3], corners: [u32; 3]) -> Option<Vec3>
 /// Gives every triangle vertices of its own with its face normal.
 pub(super) fn make_flat(mesh: &mut MeshDesc) {
     let corners: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
+    gather_vertices(mesh, &corners);
+    let triangle_count = mesh.triangles.len() as u32;
+    mesh.triangles = (0..triangle_count)
+        .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+        .collect();
     mesh.normals = mesh
         .triangles
         .iter()
         .flat_map(|&corners| [face_normal(&mesh.positions, corners).unwrap_or(Vec3::Y); 3])
         .collect();
-    mesh.positions = gather(&mesh.positions, &corners);
-    for uvs in mesh.uvs.iter_mut().flatten() {
-        *uvs = gather(uvs, &corners);
-    }
-    if let Some(colors) = &mut mesh.colors {
-        *colors = gather(colors, &corners);
-    }
-    let triangle_count = mesh.triangles.len() as u32;
-    mesh.triangles = (0..triangle_count)
-        .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
-        .collect();
-}
-
-/// The values at the given indices.
-pub(super) fn gather<T: Copy>(values: &[T], indices: &[u32]) -> Vec<T> {
-    indices
-        .iter()
-        .map(|&index| values[index as usize])
-        .collect()
 }
 
 /// Takes the given normals, made unit; zero and non-finite ones become the normal of a face at the vertex.

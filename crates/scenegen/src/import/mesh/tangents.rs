@@ -5,9 +5,10 @@ use std::collections::HashMap;
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3, Vec4};
 
-use super::normals::{gather, normalized};
+use super::normals::normalized;
+use super::vertices::{gather, gather_vertices};
 use crate::desc::MeshDesc;
-use crate::import::error::Warnings;
+use crate::import::warnings::Warnings;
 
 /// Sets `mesh.tangents`, or warns that the normal map cannot be shown.
 pub(super) fn complete(
@@ -136,13 +137,7 @@ fn generate(mesh: &mut MeshDesc, uv_set: usize) {
     all.append(&mut tangents);
     mesh.tangents = Some(all);
     if sources.len() > mesh.positions.len() {
-        mesh.positions = gather(&mesh.positions, &sources);
         mesh.normals = gather(&mesh.normals, &sources);
-        for uvs in mesh.uvs.iter_mut().flatten() {
-            *uvs = gather(uvs, &sources);
-        }
-        if let Some(colors) = &mut mesh.colors {
-            *colors = gather(colors, &sources);
-        }
+        gather_vertices(mesh, &sources);
     }
 }

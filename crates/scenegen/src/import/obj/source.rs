@@ -4,23 +4,32 @@
 //! triangles and misaligns colours where only some vertices have them. This pass removes those cases, and
 //! keeps the number of lines.
 
-use std::io::{self, BufRead, Read};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use super::lines::{line_place, split_keyword, words};
+use super::references::{Attribute, References};
+use crate::import::error::Fault;
+use crate::import::warnings::Warnings;
 
-use crate::import::error::{Fault, Warnings};
-
-/// Cleaned text, with what the materials pass wants to know.
+/// Cleaned text, with what is checked once the material libraries are known.
 pub(super) struct ObjSource {
     /// As many lines as the file.
     pub(super) text: String,
-    /// Each `usemtl`'s line and name.
+    /// Index of the line and name of each `usemtl`.
     pub(super) used_materials: Vec<(usize, String)>,
+}
+
+/// Which numbers behind `v` are its colour: tobj misaligns colours unless every vertex has one.
+#[derive(Clone, Copy)]
+enum VertexColors {
+    /// The fourth to the sixth, as every vertex has six.
+    Kept,
+    /// None are kept.
+    Dropped,
 }
 
 /// Cleans a file's text; faces that refer to what is not there are errors.
 pub(super) fn clean(bytes: &[u8], warnings: &mut Warnings) -> Result<ObjSource, Fault> {
     let raw = String::from_utf8_lossy(bytes);
-    let has_uniform_colors = has_uniform_colors(&raw);
+    let colors = vertex_colors(&raw);
     let mut source = ObjSource {
         text: String::with_capacity(raw.len()),
         used_materials: Vec::new(),
@@ -38,40 +47,29 @@ pub(super) fn clean(bytes: &[u8], warnings: &mut Warnings) -> Result<ObjSource, 
         }
         let joined = std::mem::take(&mut continued) + line;
         let (keyword, rest) = split_keyword(&joined);
-        match keyword {
-            "v" | "vt" | "vn" | "f" => {
-                let rest = rest.split('#').next().unwrap_or_default();
-                let words: Vec<&str> = rest.split_whitespace().collect();
-                references.note(keyword, &words, index)?;
-                let kept = match (keyword, words.len()) {
-                    ("v", 6) if has_uniform_colors => 6,
-                    ("v", 4) => 4,
-                    ("v" | "vn", _) => 3,
-                    ("vt", _) => 2,
-                    _ => words.len(),
-                };
-                if keyword == "f" && words.len() < 3 {
+        match (Attribute::defined_by(keyword), keyword) {
+            (Some(attribute), _) => {
+                references.define(attribute);
+                push_attribute(&mut source.text, attribute, rest, colors);
+            }
+            (None, "f") => {
+                let corners: Vec<&str> = words(rest).collect();
+                references.refer(&corners, index)?;
+                if corners.len() < 3 {
                     short_faces += 1;
                 } else {
-                    source.text.push_str(keyword);
-                    for word in words.iter().take(kept) {
-                        source.text.push(' ');
-                        source.text.push_str(word);
-                    }
-                    if keyword == "vt" && words.len() == 1 {
-                        source.text.push_str(" 0");
-                    }
+                    push_statement(&mut source.text, keyword, corners);
                 }
             }
-            "p" | "l" => points_and_lines += 1,
-            "usemtl" if rest.is_empty() => {
+            (None, "p" | "l") => points_and_lines += 1,
+            (None, "usemtl") if rest.is_empty() => {
                 warnings.push(line_place(index), "usemtl without a name is ignored")
             }
-            "usemtl" => {
-                source.used_materials.push((index + 1, rest.to_owned()));
-                source.text.push_str(&format!("usemtl {rest}"));
+            (None, "usemtl") => {
+                source.used_materials.push((index, rest.to_owned()));
+                push_statement(&mut source.text, keyword, [rest]);
             }
-            "o" | "g" | "mtllib" => source.text.push_str(&format!("{keyword} {rest}")),
+            (None, "o" | "g" | "mtllib") => push_statement(&mut source.text, keyword, [rest]),
             _ => {}
         }
         source.text.push('\n');
@@ -92,151 +90,40 @@ pub(super) fn clean(bytes: &[u8], warnings: &mut Warnings) -> Result<ObjSource, 
     Ok(source)
 }
 
-/// `line N`, counted from 1.
-pub(super) fn line_place(index: usize) -> String {
-    format!("line {}", index + 1)
+/// Writes the numbers of an attribute that tobj understands.
+fn push_attribute(text: &mut String, attribute: Attribute, rest: &str, colors: VertexColors) {
+    let numbers: Vec<&str> = words(rest).collect();
+    let kept = match (attribute, numbers.len(), colors) {
+        (Attribute::Position, 6, VertexColors::Kept) => 6,
+        // The fourth number is a weight.
+        (Attribute::Position, 4, _) => 4,
+        (Attribute::Position | Attribute::Normal, _, _) => 3,
+        (Attribute::TextureCoordinate, _, _) => 2,
+    };
+    let has_only_u = matches!(attribute, Attribute::TextureCoordinate) && numbers.len() == 1;
+    push_statement(text, attribute.keyword(), numbers.into_iter().take(kept));
+    if has_only_u {
+        text.push_str(" 0");
+    }
 }
 
-/// First word and the trimmed rest.
-pub(super) fn split_keyword(line: &str) -> (&str, &str) {
-    let line = line.trim();
-    line.split_once(char::is_whitespace)
-        .map_or((line, ""), |(keyword, rest)| (keyword, rest.trim()))
+fn push_statement<'a>(text: &mut String, keyword: &str, words: impl IntoIterator<Item = &'a str>) {
+    text.push_str(keyword);
+    for word in words {
+        text.push(' ');
+        text.push_str(word);
+    }
 }
 
-/// Whether all vertices have a colour: six numbers behind `v`.
-fn has_uniform_colors(text: &str) -> bool {
-    text.lines()
+/// Looks whether all vertices have a colour: six numbers behind `v`.
+fn vertex_colors(text: &str) -> VertexColors {
+    let mut vertices = text
+        .lines()
         .map(split_keyword)
-        .filter(|(keyword, _)| *keyword == "v")
-        .all(|(_, rest)| {
-            rest.split('#')
-                .next()
-                .unwrap_or_default()
-                .split_whitespace()
-                .count()
-                == 6
-        })
-}
-
-/// Checks faces' indices, with their lines, which tobj does late and with arithmetic that overflows.
-#[derive(Default)]
-struct References {
-    /// Positions, texture coordinates and normals so far.
-    counts: [usize; 3],
-    /// The largest index to each of them, counted from 1, and its line.
-    largest: [(usize, usize); 3],
-}
-
-const REFERENCED: [&str; 3] = ["v", "vt", "vn"];
-
-impl References {
-    fn note(&mut self, keyword: &str, words: &[&str], line: usize) -> Result<(), Fault> {
-        if let Some(kind) = REFERENCED
-            .iter()
-            .position(|&referenced| referenced == keyword)
-        {
-            self.counts[kind] += 1;
-            return Ok(());
-        }
-        for corner in words {
-            for (kind, text) in corner
-                .split('/')
-                .enumerate()
-                .take(3)
-                .filter(|(_, text)| !text.is_empty())
-            {
-                let index: i64 = text
-                    .parse()
-                    .map_err(|_| at_line(line, format!("\"{text}\" in a face is not an index")))?;
-                let count = self.counts[kind];
-                // Positive ones may refer to what follows; negative ones count back from here.
-                let absolute = if index < 0 {
-                    index.saturating_add_unsigned(count as u64) + 1
-                } else {
-                    index
-                };
-                if absolute < 1 {
-                    return Err(out_of_range(line, index, kind, count));
-                }
-                self.largest[kind] = self.largest[kind].max((absolute as usize, line));
-            }
-        }
-        Ok(())
-    }
-
-    fn check(&self, warnings: &mut Warnings) -> Result<(), Fault> {
-        for (kind, &(index, line)) in self.largest.iter().enumerate() {
-            if kind > 0 && index > 0 && self.counts[kind] == 0 {
-                // Some exporters leave out the attribute and keep the indices.
-                let message = format!(
-                    "faces refer to {}, of which there are none",
-                    REFERENCED[kind]
-                );
-                warnings.push(line_place(line), message);
-            } else if index > self.counts[kind] {
-                return Err(out_of_range(line, index as i64, kind, self.counts[kind]));
-            }
-        }
-        Ok(())
-    }
-}
-
-fn out_of_range(line: usize, index: i64, kind: usize, count: usize) -> Fault {
-    at_line(
-        line,
-        format!(
-            "a face refers to {} {index}, but there are {count}",
-            REFERENCED[kind]
-        ),
-    )
-}
-
-fn at_line(line: usize, problem: String) -> Fault {
-    Fault::new(line_place(line), problem).advise(REPAIR_LINE)
-}
-
-/// Advice for a line that makes no sense.
-pub(super) const REPAIR_LINE: &str = "repair that line or export the file again";
-
-/// Hands text out one line at a time and counts, so that a parser's error has a line.
-pub(super) struct CountingLines<'a> {
-    rest: &'a [u8],
-    count: &'a AtomicUsize,
-}
-
-impl<'a> CountingLines<'a> {
-    /// `count` is the number of lines handed out.
-    pub(super) fn new(text: &'a str, count: &'a AtomicUsize) -> Self {
-        Self {
-            rest: text.as_bytes(),
-            count,
-        }
-    }
-}
-
-impl Read for CountingLines<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let read = self.fill_buf()?.read(buffer)?;
-        self.consume(read);
-        Ok(read)
-    }
-}
-
-impl BufRead for CountingLines<'_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        let end = self
-            .rest
-            .iter()
-            .position(|&byte| byte == b'\n')
-            .map_or(self.rest.len(), |at| at + 1);
-        Ok(&self.rest[..end])
-    }
-
-    fn consume(&mut self, amount: usize) {
-        if amount > 0 && self.rest.get(amount - 1) == Some(&b'\n') {
-            self.count.fetch_add(1, Ordering::Relaxed);
-        }
-        self.rest = &self.rest[amount..];
+        .filter(|(keyword, _)| *keyword == "v");
+    if vertices.all(|(_, rest)| words(rest).count() == 6) {
+        VertexColors::Kept
+    } else {
+        VertexColors::Dropped
     }
 }

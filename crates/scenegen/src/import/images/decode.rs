@@ -1,118 +1,47 @@
-//! Decoding images: within a budget, in parallel, and never a reason to give a scene up.
+//! Decoding one image, of a size that is looked at first.
 
-use std::borrow::Cow;
 use std::io::Cursor;
 
 use exr::prelude::{ReadChannels, ReadLayers};
 use image::{DynamicImage, ImageFormat, ImageReader};
-use rayon::prelude::*;
 
-use super::budget::Budget;
-use super::error::Warnings;
-use super::guard::without_panic;
 use crate::desc::{ImageDesc, Texels};
+use crate::import::budget::Budget;
+use crate::import::guard::without_panic;
+use crate::import::warnings::Warnings;
 
 /// The largest width and height.
 const MAX_EXTENT: u32 = 16384;
 
-/// An image to decode.
-pub(super) struct ImageRequest<'a> {
-    /// For messages and the scene.
-    pub(super) name: String,
-    /// JSON path or line of the reference.
-    pub(super) place: String,
-    /// The encoded bytes, or why there are none.
-    pub(super) bytes: Result<Cow<'a, [u8]>, String>,
-    /// File extension, for formats that cannot be told from their content (TGA).
-    pub(super) extension: Option<String>,
-    /// Whether it holds normals, so that a stand-in is flat rather than white.
-    pub(super) is_normal_map: bool,
-}
-
 /// How a file is encoded.
 #[derive(Clone, Copy)]
-enum Encoding {
+pub(super) enum Encoding {
     Image(ImageFormat),
     OpenExr,
 }
 
-/// Decodes all; one that fails becomes a texel that changes nothing, and a warning.
-pub(super) fn decode_all(
-    requests: Vec<ImageRequest<'_>>,
-    warnings: &mut Warnings,
-) -> Vec<ImageDesc> {
-    let mut budget = Budget::images();
-    let checked: Vec<_> = requests
-        .into_iter()
-        .map(|request| {
-            let encoding = match &request.bytes {
-                Ok(bytes) => inspect(bytes, request.extension.as_deref(), &mut budget),
-                Err(problem) => Err(problem.clone()),
-            };
-            (request, encoding)
-        })
-        .collect();
-    let decoded: Vec<_> = checked
-        .into_par_iter()
-        .map(|(request, encoding)| {
-            let result = match (&request.bytes, encoding) {
-                (Ok(bytes), Ok(encoding)) => without_panic(|| decode(bytes, encoding)),
-                (_, Err(problem)) => Err(problem),
-                (Err(problem), _) => Err(problem.clone()),
-            };
-            (request.name, request.place, request.is_normal_map, result)
-        })
-        .collect();
-
-    decoded
-        .into_iter()
-        .map(|(name, place, is_normal_map, result)| match result {
-            Ok(decoded) => {
-                decoded.warn(&place, warnings);
-                decoded.into_desc(name)
-            }
-            Err(problem) => {
-                let color = if is_normal_map {
-                    [128, 128, 255, 255]
-                } else {
-                    [255; 4]
-                };
-                let stand_in = if is_normal_map {
-                    "no normal map"
-                } else {
-                    "white"
-                };
-                warnings.push(place, format!("image {problem}; {stand_in} is used"));
-                ImageDesc {
-                    name,
-                    width: 1,
-                    height: 1,
-                    texels: Texels::Rgba8(vec![color]),
-                }
-            }
-        })
-        .collect()
-}
-
 /// Decodes one image that the scene cannot do without.
-pub(super) fn decode_one(bytes: &[u8], extension: Option<&str>) -> Result<Decoded, String> {
+pub(in crate::import) fn decode_one(
+    bytes: &[u8],
+    extension: Option<&str>,
+) -> Result<Decoded, String> {
     let encoding = inspect(bytes, extension, &mut Budget::images())?;
-    without_panic(|| decode(bytes, encoding))
+    decode(bytes, encoding)
 }
 
 /// A decoded image without a name.
-pub(super) struct Decoded {
+pub(in crate::import) struct Decoded {
     width: u32,
     height: u32,
     /// The texels.
-    pub(super) texels: Texels,
+    pub(in crate::import) texels: Texels,
     /// How many float texels were negative, infinite or NaN and are 0 now.
     replaced: usize,
 }
 
 impl Decoded {
     /// Reports replaced texels.
-    pub(super) fn warn(&self, place: &str, warnings: &mut Warnings) {
+    pub(in crate::import) fn warn(&self, place: &str, warnings: &mut Warnings) {
         if self.replaced > 0 {
             let message = format!(
                 "{} texels have NaN, infinite or negative values; 0 is used",
@@ -123,7 +52,7 @@ impl Decoded {
     }
 
     /// Names it.
-    pub(super) fn into_desc(self, name: String) -> ImageDesc {
+    pub(in crate::import) fn into_desc(self, name: String) -> ImageDesc {
         ImageDesc {
             name,
             width: self.width,
@@ -134,7 +63,11 @@ impl Decoded {
 }
 
 /// Finds the encoding and refuses sizes beyond the limits, before anything is allocated.
-fn inspect(bytes: &[u8], extension: Option<&str>, budget: &mut Budget) -> Result<Encoding, String> {
+pub(super) fn inspect(
+    bytes: &[u8],
+    extension: Option<&str>,
+    budget: &mut Budget,
+) -> Result<Encoding, String> {
     let (encoding, width, height) = without_panic(|| {
         if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
             let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)
@@ -175,11 +108,15 @@ fn unreadable(error: impl std::fmt::Display) -> String {
     format!("cannot be read ({error})")
 }
 
-fn decode(bytes: &[u8], encoding: Encoding) -> Result<Decoded, String> {
-    let format = match encoding {
-        Encoding::OpenExr => return decode_exr(bytes),
-        Encoding::Image(format) => format,
-    };
+/// Decodes an image whose encoding [`inspect`] found.
+pub(super) fn decode(bytes: &[u8], encoding: Encoding) -> Result<Decoded, String> {
+    without_panic(|| match encoding {
+        Encoding::OpenExr => decode_exr(bytes),
+        Encoding::Image(format) => decode_with_image(bytes, format),
+    })
+}
+
+fn decode_with_image(bytes: &[u8], format: ImageFormat) -> Result<Decoded, String> {
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(1 << 30);

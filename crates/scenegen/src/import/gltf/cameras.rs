@@ -1,0 +1,84 @@
+//! Cameras, placed in the world.
+
+use std::f32::consts::{FRAC_PI_4, PI};
+
+use glam::{DAffine3, DMat3, DQuat};
+use gltf::json::camera::Type;
+use gltf::json::validation::Checked;
+use gltf::json::{Camera, Index};
+
+use super::document::Document;
+use super::lookup::{get, place};
+use super::nodes::PlacedNode;
+use crate::desc::{CameraDesc, Projection};
+use crate::import::error::Fault;
+use crate::import::warnings::Warnings;
+
+/// The vertical field of view where a file gives an impossible one, in radians.
+const DEFAULT_YFOV: f32 = FRAC_PI_4;
+
+/// The camera of a node; `None`, after a warning, where it sees nothing.
+pub(super) fn read(
+    document: &Document,
+    index: Index<Camera>,
+    placed: &PlacedNode<'_>,
+    warnings: &mut Warnings,
+) -> Result<Option<CameraDesc>, Fault> {
+    let camera = get(&document.root.cameras, index, "cameras", &placed.place)?;
+    let at = place("cameras", index.value(), camera.name.as_deref());
+    let projection = match (&camera.type_, &camera.perspective, &camera.orthographic) {
+        (Checked::Valid(Type::Perspective), Some(perspective), _) => {
+            let mut yfov = perspective.yfov;
+            if !(yfov > 0.0 && yfov < PI) {
+                warnings.push(at, format!("yfov {yfov} is not in (0, π); π/4 is used"));
+                yfov = DEFAULT_YFOV;
+            }
+            Projection::Perspective { yfov }
+        }
+        (Checked::Valid(Type::Orthographic), _, Some(orthographic)) => {
+            let mut ymag = orthographic.ymag.abs();
+            if !(ymag > 0.0 && ymag.is_finite()) {
+                warnings.push(
+                    at,
+                    format!("ymag {ymag} is not a positive number; 1 is used"),
+                );
+                ymag = 1.0;
+            }
+            Projection::Orthographic { ymag }
+        }
+        (Checked::Valid(_), _, _) => {
+            return Err(Fault::new(at, "lacks the object that its type names"));
+        }
+        (Checked::Invalid, _, _) => return Err(Fault::new(at, "has an unknown type")),
+    };
+    let position = placed.world.translation.as_vec3();
+    let Some(rotation) = rotation_of(&placed.world).filter(|_| position.is_finite()) else {
+        warnings.push(
+            &*placed.place,
+            "the transform leaves the camera no orientation; it is left out",
+        );
+        return Ok(None);
+    };
+    let name = placed
+        .node
+        .name
+        .clone()
+        .or_else(|| camera.name.clone())
+        .unwrap_or_else(|| placed.name.clone());
+    Ok(Some(CameraDesc {
+        name,
+        position,
+        rotation: rotation.as_quat().normalize(),
+        projection,
+    }))
+}
+
+/// The rotation of a transform that may also scale and shear; `None` where the view axis or the up axis
+/// collapses.
+fn rotation_of(world: &DAffine3) -> Option<DQuat> {
+    let back = world.matrix3.z_axis.try_normalize()?;
+    let up = world.matrix3.y_axis;
+    let up = (up - back * up.dot(back)).try_normalize()?;
+    let rotation = DQuat::from_mat3(&DMat3::from_cols(up.cross(back), up, back));
+    rotation.is_finite().then(|| rotation.normalize())
+}

@@ -1,0 +1,86 @@
+//! The meshes of a glTF file, read as nodes ask for them: each primitive becomes a mesh of the scene.
+
+use gltf::json::{Index, Mesh};
+
+use super::accessors::Accessors;
+use super::document::Document;
+use super::lookup::{get, place};
+use super::materials::Materials;
+use super::primitives;
+use crate::desc::MeshDesc;
+use crate::import::error::Fault;
+use crate::import::mesh;
+use crate::import::warnings::Warnings;
+
+/// Meshes in use, in order of first use.
+pub(super) struct Meshes<'a> {
+    document: &'a Document,
+    /// Those of the scene so far.
+    pub(super) list: Vec<MeshDesc>,
+    /// For each mesh of the file the indices in `list` of what it became, once read.
+    indices: Vec<Option<Vec<usize>>>,
+}
+
+impl<'a> Meshes<'a> {
+    /// None yet.
+    pub(super) fn new(document: &'a Document) -> Self {
+        Self {
+            document,
+            list: Vec::new(),
+            indices: vec![None; document.root.meshes.len()],
+        }
+    }
+
+    /// Says which meshes of the file are not in the scene.
+    pub(super) fn dismiss_unused(&self, warnings: &mut Warnings) {
+        for (index, indices) in self.indices.iter().enumerate() {
+            if indices.is_none() {
+                let mesh = &self.document.root.meshes[index];
+                let at = place("meshes", index, mesh.name.as_deref());
+                warnings.dismiss(None, at, "no node of the scene shows it");
+            }
+        }
+    }
+
+    /// The indices in `list` of a mesh's primitives, without those that have nothing to render.
+    pub(super) fn indices_of(
+        &mut self,
+        index: Index<Mesh>,
+        user: &str,
+        accessors: &mut Accessors<'_>,
+        materials: &mut Materials<'_>,
+        warnings: &mut Warnings,
+    ) -> Result<Vec<usize>, Fault> {
+        let mesh = get(&self.document.root.meshes, index, "meshes", user)?;
+        let index = index.value();
+        if let Some(indices) = &self.indices[index] {
+            return Ok(indices.clone());
+        }
+        let mesh_place = place("meshes", index, mesh.name.as_deref());
+        let mesh_name = mesh.name.clone();
+        let mesh_name = mesh_name.unwrap_or_else(|| format!("mesh {index}"));
+        let mut indices = Vec::new();
+        for (i, primitive) in mesh.primitives.iter().enumerate() {
+            let at = format!("{mesh_place}/primitives/{i}");
+            let Some(raw) = primitives::read(primitive, accessors, &at, warnings)? else {
+                continue;
+            };
+            let name = if mesh.primitives.len() > 1 {
+                format!("{mesh_name}/{i}")
+            } else {
+                mesh_name.clone()
+            };
+            let (material_index, material) = materials.get(primitive.material, &at, warnings)?;
+            let budget = &mut accessors.budget;
+            if let Some(mesh) = mesh::finish(raw, name, material, &at, budget, warnings)? {
+                self.list.push(MeshDesc {
+                    material: material_index,
+                    ..mesh
+                });
+                indices.push(self.list.len() - 1);
+            }
+        }
+        self.indices[index] = Some(indices.clone());
+        Ok(indices)
+    }
+}

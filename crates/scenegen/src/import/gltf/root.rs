@@ -1,0 +1,74 @@
+//! The JSON of a glTF file.
+//!
+//! It is read into `gltf::json` types without that crate's validation, which refuses extensions we can read
+//! and indices out of bounds in others. Every index is looked up with a check instead.
+
+use gltf::json::{Animation, Root, Value};
+
+use crate::import::error::{Fault, MAKE_SMALLER};
+
+/// More JSON objects than this would need gigabytes once parsed.
+const MAX_JSON_OBJECTS: usize = 2_000_000;
+
+/// Reads the JSON of a glTF 2.0 file.
+pub(super) fn parse(json: &[u8]) -> Result<Root, Fault> {
+    let root = parse_any_version(json)?;
+    check_version(&root)?;
+    Ok(root)
+}
+
+fn parse_any_version(json: &[u8]) -> Result<Root, Fault> {
+    if json.iter().filter(|&&byte| byte == b'{').count() > MAX_JSON_OBJECTS {
+        let problem = format!("more than {MAX_JSON_OBJECTS} JSON objects");
+        return Err(Fault::new("JSON", problem).advise(MAKE_SMALLER));
+    }
+    // The specification forbids a byte order mark and allows readers to skip it.
+    let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    Root::from_slice(json).or_else(|error| {
+        parse_leniently(json).ok_or_else(|| {
+            let place = format!("line {} column {}", error.line(), error.column());
+            Fault::new(place, format!("invalid JSON or glTF: {error}"))
+        })
+    })
+}
+
+/// Second try without what the `gltf` crate is stricter about than the specification: a scene needs no
+/// nodes, an animation channel needs no node, and animations are not shown anyway.
+fn parse_leniently(json: &[u8]) -> Option<Root> {
+    let mut value: Value = serde_json::from_slice(json).ok()?;
+    let members = value.as_object_mut()?;
+    let had_animations = members.remove("animations").is_some();
+    for scene in members
+        .get_mut("scenes")
+        .and_then(Value::as_array_mut)
+        .into_iter()
+        .flatten()
+    {
+        scene
+            .as_object_mut()?
+            .entry("nodes")
+            .or_insert_with(|| Value::Array(Vec::new()));
+    }
+    let mut root: Root = serde_json::from_value(value).ok()?;
+    if had_animations {
+        let (channels, samplers) = (Vec::new(), Vec::new());
+        root.animations.push(Animation {
+            extensions: None,
+            extras: None,
+            channels,
+            name: None,
+            samplers,
+        });
+    }
+    Some(root)
+}
+
+fn check_version(root: &Root) -> Result<(), Fault> {
+    let asset = &root.asset;
+    let needed = asset.min_version.as_ref().unwrap_or(&asset.version);
+    if asset.version.starts_with("2.") && (asset.min_version.is_none() || needed == "2.0") {
+        return Ok(());
+    }
+    let problem = format!("glTF version {needed} is not 2.0");
+    Err(Fault::new("asset/version", problem).advise("export it as glTF 2.0"))
+}

@@ -1,0 +1,145 @@
+//! How a glTF material scatters light: metallic-roughness with the extensions that we render.
+
+use gltf::json::Material;
+use gltf::json::extensions::material::{Ior, Material as Extensions, Volume};
+
+use super::members::Members;
+use crate::desc::{ColorInput, MetallicRoughness, ScalarInput, SurfaceDesc};
+use crate::import::error::Fault;
+
+/// The index of refraction where KHR_materials_ior gives none.
+const DEFAULT_IOR: f32 = 1.5;
+
+/// Reads the surface of a material, all but its base colour.
+pub(super) fn read(
+    material: &Material,
+    extensions: &Extensions,
+    base_color: ColorInput,
+    members: &mut Members<'_, '_>,
+) -> Result<SurfaceDesc, Fault> {
+    let surface = match extensions.unlit {
+        Some(_) => {
+            members.warn("KHR_materials_unlit is rendered as a diffuse surface");
+            unlit(base_color)
+        }
+        None => metallic_roughness(material, extensions, base_color, members)?,
+    };
+    Ok(SurfaceDesc::MetallicRoughness(surface))
+}
+
+fn metallic_roughness(
+    material: &Material,
+    extensions: &Extensions,
+    base_color: ColorInput,
+    members: &mut Members<'_, '_>,
+) -> Result<MetallicRoughness, Fault> {
+    let pbr = &material.pbr_metallic_roughness;
+    let texture = members.texture(
+        "metallicRoughnessTexture",
+        pbr.metallic_roughness_texture.as_ref(),
+    )?;
+    let metallic = members.number("metallicFactor", pbr.metallic_factor.0, 0.0..=1.0, 1.0);
+    let roughness = members.number("roughnessFactor", pbr.roughness_factor.0, 0.0..=1.0, 1.0);
+
+    let specular = extensions.specular.clone().unwrap_or_default();
+    let specular_texture =
+        members.texture("specularTexture", specular.specular_texture.as_ref())?;
+    let specular_color_texture = members.texture(
+        "specularColorTexture",
+        specular.specular_color_texture.as_ref(),
+    )?;
+    let transmission = extensions.transmission.clone().unwrap_or_default();
+    let transmission_texture = members.texture(
+        "transmissionTexture",
+        transmission.transmission_texture.as_ref(),
+    )?;
+    let transmission_factor = members.number(
+        "transmissionFactor",
+        transmission.transmission_factor.0,
+        0.0..=1.0,
+        0.0,
+    );
+    Ok(MetallicRoughness {
+        base_color,
+        metallic: ScalarInput {
+            factor: metallic,
+            texture: texture.clone().map(|texture| (texture, 2)),
+        },
+        roughness: ScalarInput {
+            factor: roughness,
+            texture: texture.map(|texture| (texture, 1)),
+        },
+        ior: ior(members, extensions.ior.as_ref()),
+        specular: ScalarInput {
+            factor: members.number("specularFactor", specular.specular_factor.0, 0.0..=1.0, 1.0),
+            texture: specular_texture.map(|texture| (texture, 3)),
+        },
+        specular_color: ColorInput {
+            factor: members.color(
+                "specularColorFactor",
+                specular.specular_color_factor.0,
+                0.0..=f32::MAX,
+                1.0,
+            ),
+            texture: specular_color_texture,
+        },
+        transmission: ScalarInput {
+            factor: transmission_factor,
+            texture: transmission_texture.map(|texture| (texture, 0)),
+        },
+        solid: is_solid(members, extensions.volume.as_ref(), transmission_factor),
+    })
+}
+
+/// KHR_materials_volume: whether the surface bounds a solid.
+fn is_solid(
+    members: &mut Members<'_, '_>,
+    volume: Option<&Volume>,
+    transmission_factor: f32,
+) -> bool {
+    let Some(volume) = volume else { return false };
+    let is_solid = members.number(
+        "thicknessFactor",
+        volume.thickness_factor.0,
+        0.0..=f32::MAX,
+        0.0,
+    ) > 0.0;
+    let absorbs =
+        volume.attenuation_color.0 != [1.0; 3] && volume.attenuation_distance.0.is_finite();
+    if is_solid && absorbs && transmission_factor > 0.0 {
+        members.warn("the attenuation of KHR_materials_volume is not rendered");
+    }
+    is_solid
+}
+
+/// KHR_materials_ior: 0, which stands for Fresnel 1, or at least 1.
+fn ior(members: &mut Members<'_, '_>, extension: Option<&Ior>) -> f32 {
+    let ior = extension.map_or(DEFAULT_IOR, |extension| extension.ior.0);
+    if ior == 0.0 || (ior >= 1.0 && ior.is_finite()) {
+        return ior;
+    }
+    members.warn(format!(
+        "ior {ior} is neither 0 nor at least 1; {DEFAULT_IOR} is used"
+    ));
+    DEFAULT_IOR
+}
+
+fn unlit(base_color: ColorInput) -> MetallicRoughness {
+    let constant = |factor| ScalarInput {
+        factor,
+        texture: None,
+    };
+    MetallicRoughness {
+        base_color,
+        metallic: constant(0.0),
+        roughness: constant(1.0),
+        ior: DEFAULT_IOR,
+        specular: constant(0.0),
+        specular_color: ColorInput {
+            factor: [0.0; 3],
+            texture: None,
+        },
+        transmission: constant(0.0),
+        solid: false,
+    }
+}

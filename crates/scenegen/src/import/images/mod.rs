@@ -1,0 +1,7 @@
+//! Images: decoded within a budget, and never a reason to give a scene up.
+
+mod decode;
+mod requests;
+
+pub(super) use decode::decode_one;
+pub(super) use requests::{ImageRequest, ImageRole, decode_all};

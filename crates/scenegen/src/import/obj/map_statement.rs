@@ -1,0 +1,131 @@
+//! A texture's statement in an MTL file: options, and a file.
+
+use std::collections::BTreeSet;
+
+use super::lines::split_keyword;
+use crate::desc::Wrap;
+
+/// A texture's file and the options before it.
+#[derive(Debug, PartialEq)]
+pub(super) struct MapStatement {
+    /// File name as written; may have spaces.
+    pub(super) file: String,
+    /// `-s`, along u and v.
+    pub(super) scale: [f32; 2],
+    /// `-o`, along u and v.
+    pub(super) offset: [f32; 2],
+    /// `-clamp`.
+    pub(super) wrap: Wrap,
+    /// `-imfchan`: the channel of a scalar map, 0 red … 3 alpha.
+    pub(super) channel: usize,
+    /// `-bm`, if it is there.
+    pub(super) bump_scale: Option<f32>,
+    /// Names of the other options, without the dash.
+    pub(super) others: BTreeSet<String>,
+}
+
+impl MapStatement {
+    /// Reads `-option argument… file name`.
+    pub(super) fn parse(statement: &str) -> Self {
+        let mut map = Self {
+            file: String::new(),
+            scale: [1.0; 2],
+            offset: [0.0; 2],
+            wrap: Wrap::Repeat,
+            channel: 0,
+            bump_scale: None,
+            others: BTreeSet::new(),
+        };
+        let mut rest = statement.trim();
+        while let Some((name, arguments, remainder)) = split_option(rest) {
+            match name {
+                "s" => map.scale = [0, 1].map(|index| number(&arguments, index, 1.0)),
+                "o" => map.offset = [0, 1].map(|index| number(&arguments, index, 0.0)),
+                "clamp" => {
+                    map.wrap = match arguments[0] {
+                        "on" => Wrap::Clamp,
+                        _ => Wrap::Repeat,
+                    }
+                }
+                "imfchan" => {
+                    map.channel = match arguments[0] {
+                        "g" => 1,
+                        "b" => 2,
+                        "m" => 3,
+                        _ => 0,
+                    }
+                }
+                "bm" => map.bump_scale = Some(number(&arguments, 0, 1.0)),
+                _ => {
+                    map.others.insert(name.to_owned());
+                }
+            }
+            rest = remainder;
+        }
+        map.file = rest.trim().to_owned();
+        map
+    }
+}
+
+/// The name of an option, its arguments, of which there is at least one, and what follows; `None` where the
+/// file's name starts.
+fn split_option(text: &str) -> Option<(&str, Vec<&str>, &str)> {
+    let (name, mut rest) = split_keyword(text.strip_prefix('-')?);
+    let (least, most) = match name {
+        "o" | "s" | "t" => (1, 3),
+        "mm" => (2, 2),
+        "blendu" | "blendv" | "bm" | "boost" | "cc" | "clamp" | "colorspace" | "imfchan"
+        | "texres" | "type" => (1, 1),
+        // Not an option: a file whose name starts with a dash.
+        _ => return None,
+    };
+    let mut arguments = Vec::new();
+    while arguments.len() < most {
+        let (argument, remainder) = split_keyword(rest);
+        // The second and third number may be missing, and the file's name comes next.
+        if arguments.len() >= least && argument.parse::<f32>().is_err() {
+            break;
+        }
+        arguments.push(argument);
+        rest = remainder;
+    }
+    Some((name, arguments, rest))
+}
+
+fn number(arguments: &[&str], index: usize, default: f32) -> f32 {
+    arguments
+        .get(index)
+        .and_then(|text| text.parse().ok())
+        .filter(|value: &f32| value.is_finite())
+        .unwrap_or(default)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_are_told_from_file_names() {
+        let map = MapStatement::parse("-s 2 3 -clamp on -bm 0.5 -o 0.25 my texture 1.png");
+        assert_eq!(map.file, "my texture 1.png");
+        assert_eq!(map.scale, [2.0, 3.0]);
+        assert_eq!(map.wrap, Wrap::Clamp);
+        assert_eq!(map.bump_scale, Some(0.5));
+        assert_eq!(map.offset, [0.25, 0.0]);
+        assert!(map.others.is_empty());
+        assert_eq!(MapStatement::parse("-dash.png").file, "-dash.png");
+        assert_eq!(MapStatement::parse("tex\\a b.png").file, "tex\\a b.png");
+        assert_eq!(MapStatement::parse("-s").file, "");
+    }
+
+    #[test]
+    fn the_last_of_equal_options_counts_and_unread_ones_are_named() {
+        let map = MapStatement::parse("-s 2 3 -s 4 -imfchan g -imfchan m -mm 0 1 -cc on -o nan a");
+        assert_eq!(
+            (map.scale, map.channel, map.offset),
+            ([4.0, 1.0], 3, [0.0; 2])
+        );
+        assert_eq!(map.others.into_iter().collect::<Vec<_>>(), ["cc", "mm"]);
+        assert_eq!(map.file, "a");
+    }
+}

@@ -1,0 +1,23 @@
+//! What the user wants besides the file.
+
+use std::path::PathBuf;
+
+/// Options of an import.
+#[derive(Debug, Clone, Default)]
+pub struct ImportOptions {
+    /// Light from infinitely far away.
+    pub environment: Option<EnvironmentOptions>,
+    /// Whether warnings are errors.
+    pub strict: bool,
+}
+
+/// Light from infinitely far away, from a latitude-longitude image.
+#[derive(Debug, Clone)]
+pub struct EnvironmentOptions {
+    /// A `.hdr`, `.exr` or 8-bit image; the latter is decoded from sRGB.
+    pub path: PathBuf,
+    /// Factor on radiance.
+    pub strength: f32,
+    /// Turn about +Y.
+    pub rotation_degrees: f32,
+}
