@@ -6,10 +6,11 @@
 //!                   └─ builds ─▶ contenders ────────┴─ measure (rounds, all contenders in turn) ─ report
 //! ```
 //!
-//! [`run::traversal`] is the whole of it: `cargo xtask bench traversal` prints what it returns. Times are CPU times of
+//! [`run::traversal`] is the whole of it: `cargo xtask bench traversal` prints what it returns ([`command`]). Times are CPU times of
 //! one pinned thread. Every round runs all contenders once, so that a ratio is taken between neighbours in time.
 
 pub mod code_size;
+pub mod command;
 pub mod compile;
 pub mod contender;
 pub mod embree;

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::rc::Rc;
 
+use clap::ValueEnum;
 use residual_bvh::{
     AllHits, BuildQuality, Bvh, Hit, Hybrid, Kernel as _, OneByOne, Packets, Ray, Single,
     Watertight, build,
@@ -18,7 +19,7 @@ use crate::on_isa;
 use crate::scene::Mesh;
 
 /// How rays are traced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Kernel {
     /// One ray, many boxes.
     Single,
@@ -52,7 +53,7 @@ impl fmt::Display for Kernel {
 }
 
 /// How much arithmetic is spent on edges and vertices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Precision {
     /// May miss between triangles.
     Fast,

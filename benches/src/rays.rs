@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use clap::ValueEnum;
 use glam::Vec3;
 use residual_bvh::{Hit, Ray};
 
@@ -17,13 +18,13 @@ pub enum Query {
 }
 
 /// Where rays come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RayKind {
     /// Through pixel centres; tiles of 8×8, in them blocks of 4×4, so that sixteen neighbours make a packet.
     Primary,
     /// One for each primary hit, cosine-distributed about the normal, up to a fifth of the box's diagonal; any hit.
     Ao,
-    /// As [`RayKind::Ao`], without a limit; nearest hit.
+    /// One for each primary hit, cosine-distributed about the normal, without a limit; nearest hit.
     Diffuse,
     /// Rays that miss the box around everything: what a call costs.
     Miss,
