@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::desc::{Dismissed, Warning};
+use crate::desc::{Dismissed, Warning, WarningKind};
 use crate::effect::Effect;
 
 /// Why a scene was not imported.
@@ -133,6 +133,7 @@ impl Warnings {
             return;
         }
         let warning = Warning {
+            kind: WarningKind::Unfaithful,
             place: place.into(),
             message: message.into(),
         };
@@ -168,6 +169,7 @@ impl Warnings {
         if self.omitted > 0 {
             let message = format!("{} more warnings are left out", self.omitted);
             self.list.push(Warning {
+                kind: WarningKind::Unfaithful,
                 place: "warnings".into(),
                 message,
             });
