@@ -6,16 +6,9 @@ use clap::ValueEnum;
 use glam::Vec3;
 use residual_bvh::{Hit, Ray};
 
-use crate::scene::{Mesh, Scene, View};
-
-/// What is asked about rays.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Query {
-    /// The nearest hit.
-    Closest,
-    /// Whether there is one.
-    Any,
-}
+use crate::contender::Query;
+use crate::mesh::Mesh;
+use crate::scene::{Scene, View};
 
 /// Where rays come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::embree::{Embree, EmbreeScene, EmbreeTraversal, Quality};
 use crate::isa::Isa;
+use crate::mesh::Mesh;
 use crate::render::{RenderContender, RenderRow, render_table, renders};
-use crate::scene::Mesh;
 use anyhow::{Context, Result};
 use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{
