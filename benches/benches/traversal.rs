@@ -7,10 +7,11 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use residual_benches::contender::Contender;
 use residual_benches::embree::{Embree, EmbreeContender, Mode, Quality};
 use residual_benches::isa::Isa;
+use residual_benches::mesh::Mesh;
 use residual_benches::ours::{Trees, variants};
 use residual_benches::peers;
 use residual_benches::rays::{RayKind, ray_sets};
-use residual_benches::scene::{Mesh, Scene};
+use residual_benches::scene::Scene;
 
 fn traversal(criterion: &mut Criterion) {
     let scene = Scene::new(

@@ -7,8 +7,9 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use residual_benches::measure::thread_time;
+use residual_benches::mesh::Mesh;
 use residual_benches::rays::ray_sets;
-use residual_benches::scene::{Mesh, Scene};
+use residual_benches::scene::Scene;
 use residual_bvh::{BuildQuality, Bvh, Hit, Instance, InstanceHit, InstancedBvh, Ray, build};
 use residual_scenegen::import::{ImportOptions, import};
 

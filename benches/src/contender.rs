@@ -2,7 +2,14 @@
 
 use residual_bvh::{Hit, Ray};
 
-use crate::rays::Query;
+/// What is asked about rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Query {
+    /// The nearest hit.
+    Closest,
+    /// Whether there is one.
+    Any,
+}
 
 /// A tracer with its hierarchy.
 pub trait Contender {

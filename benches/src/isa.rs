@@ -2,16 +2,18 @@
 
 use std::fmt;
 
+use clap::ValueEnum;
 use fearless_simd::Level;
 
 /// An instruction set that kernels are measured on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Isa {
     /// AVX-512 as of Ice Lake.
     Avx512,
-    /// AVX2 with FMA (x86-64-v3).
+    /// AVX2 with FMA (build with RUSTFLAGS="-C target-cpu=x86-64-v3").
     Avx2,
     /// The best that is neither of these: SSE, NEON, or plain arrays.
+    #[value(skip)]
     Other,
 }
 

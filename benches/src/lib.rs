@@ -6,19 +6,22 @@
 //!                   └─ builds ─▶ contenders ────────┴─ measure (rounds, all contenders in turn) ─ report
 //! ```
 //!
-//! [`run::traversal`] is the whole of it: `cargo xtask bench traversal` prints what it returns. Times are CPU times of
+//! [`run::traversal`] is the whole of it: `cargo xtask bench traversal` prints what it returns ([`command`]). Times are CPU times of
 //! one pinned thread. Every round runs all contenders once, so that a ratio is taken between neighbours in time.
 
 pub mod code_size;
+pub mod command;
 pub mod compile;
 pub mod contender;
 pub mod embree;
 pub mod halstead;
 pub mod isa;
 pub mod measure;
+pub mod mesh;
 pub mod ours;
 pub mod peers;
 pub mod rays;
+pub mod reference;
 pub mod render;
 pub mod report;
 pub mod run;

@@ -7,18 +7,18 @@ use std::collections::HashMap;
 use std::fmt;
 use std::rc::Rc;
 
+use clap::ValueEnum;
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Hit, Hybrid, Kernel as _, OneByOne, Packets, Ray, Single,
-    Watertight, build,
+    AllHits, BuildQuality, Bvh, Hybrid, Kernel as _, OneByOne, Packets, Single, build,
 };
 
 use crate::contender::Stream;
 use crate::isa::Isa;
+use crate::mesh::Mesh;
 use crate::on_isa;
-use crate::scene::Mesh;
 
 /// How rays are traced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Kernel {
     /// One ray, many boxes.
     Single,
@@ -52,7 +52,7 @@ impl fmt::Display for Kernel {
 }
 
 /// How much arithmetic is spent on edges and vertices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Precision {
     /// May miss between triangles.
     Fast,
@@ -231,21 +231,4 @@ pub fn builds() -> Vec<Build> {
         };
     }
     builds!(4 8 16)
-}
-
-/// Nearest hits by a kernel that the other answers are compared with, and from which rays are made.
-pub struct Reference(Bvh<8>);
-
-impl Reference {
-    /// Builds its hierarchy, quickly.
-    pub fn new(mesh: &Mesh) -> Reference {
-        Reference(build_tree::<8, 8>(mesh, BuildQuality::Fast).bvh)
-    }
-
-    /// The nearest hits.
-    pub fn closest(&self, rays: &[Ray]) -> Vec<Hit> {
-        let mut hits = vec![Hit::miss(0.0); rays.len()];
-        fearless_simd::dispatch!(fearless_simd::Level::new(), simd => Single.closest_hits(simd, Watertight, self.0.view(), rays, &mut hits, &AllHits));
-        hits
-    }
 }

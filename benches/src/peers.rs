@@ -14,7 +14,7 @@ use obvhs::triangle::Triangle;
 use residual_bvh::{Hit, Ray};
 
 use crate::contender::Stream;
-use crate::scene::Mesh;
+use crate::mesh::Mesh;
 
 /// obvhs' binary hierarchy, built with its preset `very_slow_build`.
 pub fn bvh2(mesh: &Mesh) -> Stream {

@@ -2,28 +2,22 @@
 
 use std::fmt;
 
+use clap::ValueEnum;
 use glam::Vec3;
 use residual_bvh::{Hit, Ray};
 
-use crate::scene::{Mesh, Scene, View};
-
-/// What is asked about rays.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Query {
-    /// The nearest hit.
-    Closest,
-    /// Whether there is one.
-    Any,
-}
+use crate::contender::Query;
+use crate::mesh::Mesh;
+use crate::scene::{Scene, View};
 
 /// Where rays come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RayKind {
     /// Through pixel centres; tiles of 8×8, in them blocks of 4×4, so that sixteen neighbours make a packet.
     Primary,
     /// One for each primary hit, cosine-distributed about the normal, up to a fifth of the box's diagonal; any hit.
     Ao,
-    /// As [`RayKind::Ao`], without a limit; nearest hit.
+    /// One for each primary hit, cosine-distributed about the normal, without a limit; nearest hit.
     Diffuse,
     /// Rays that miss the box around everything: what a call costs.
     Miss,

@@ -6,13 +6,13 @@ use std::rc::Rc;
 use anyhow::{Result, ensure};
 use residual_metrics::Estimate;
 
-use crate::contender::Contender;
+use crate::contender::{Contender, Query};
 use crate::embree::{Embree, EmbreeContender, EmbreeScene, Mode, Quality};
 use crate::isa::Isa;
 use crate::measure::{Measured, Pinned, interleaved};
 use crate::ours::{self, Kernel, Precision, Trees};
 use crate::peers;
-use crate::rays::{Query, RayKind, RaySet, ray_sets};
+use crate::rays::{RayKind, RaySet, ray_sets};
 use crate::report::{BuildRow, Comparison, Label, Row};
 use crate::scene::Scene;
 

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use residual_scenegen::ablation::{instead, without};
+use residual_scenegen::desc::WarningKind;
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::plan;
 use residual_tests::tiny;
@@ -30,7 +31,10 @@ fn effects_can_be_taken_out() {
                 Effect::AlphaBlending,
             ];
             let stays = match effect {
-                Effect::Environment => !after.warnings.is_empty(),
+                Effect::Environment => after
+                    .warnings
+                    .iter()
+                    .any(|warning| warning.kind == WarningKind::NoLight),
                 Effect::Textures => others.iter().any(|other| before.has(*other)),
                 _ => false,
             };

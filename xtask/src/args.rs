@@ -1,5 +1,6 @@
 //! Arguments.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -31,8 +32,8 @@ pub(crate) enum Command {
     #[command(subcommand)]
     Cache(CacheCommand),
     /// Measure speed
-    #[command(subcommand)]
-    Bench(BenchCommand),
+    #[command(disable_help_flag = true)]
+    Bench(BenchArgs),
 }
 
 /// Which scene, and how it is read.
@@ -171,151 +172,15 @@ pub(crate) enum CacheCommand {
     Clear,
 }
 
-#[derive(Subcommand)]
-pub(crate) enum BenchCommand {
-    /// Ray queries, beside Embree's (set RESIDUAL_EMBREE_LIB) and obvhs'
-    Traversal(TraversalArgs),
-    /// Whole renders: specialized and interpreted, with our traversal and with Embree's (set RESIDUAL_EMBREE_LIB)
-    Render(RenderBenchArgs),
-    /// Shading alone, per kind of program: specialized and interpreted, with constants and with textures
-    Shading(ShadingArgs),
-    /// How soon a scene's renderer is ready: planning, emission, compiling, and from the cache. And the size of our code
-    Compile(CompileBenchArgs),
-}
-
 #[derive(Args)]
-pub(crate) struct CompileBenchArgs {
-    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) scene: Vec<PathBuf>,
-    /// One JSON object a line on standard output
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Measured rounds
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub(crate) rounds: u32,
-}
-
-#[derive(Args)]
-pub(crate) struct ShadingArgs {
-    /// One JSON object a line on standard output
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Paths shaded at once, with commas between them
+pub(crate) struct BenchArgs {
+    /// What to measure; --help lists it
     #[arg(
-        long,
-        value_name = "N",
-        value_delimiter = ',',
-        default_value = "1,4,8,16"
+        value_name = "ARGS",
+        trailing_var_arg = true,
+        allow_hyphen_values = true
     )]
-    pub(crate) lanes: Vec<LaneCount>,
-    /// Measured rounds
-    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub(crate) rounds: u32,
-}
-
-#[derive(Args)]
-pub(crate) struct RenderBenchArgs {
-    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) scene: Vec<PathBuf>,
-    /// One JSON object a line on standard output
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Measured rounds
-    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub(crate) rounds: u32,
-    /// Samples per pixel in a round
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) spp: u32,
-    /// Width and height of the image
-    #[arg(long, value_name = "WxH", default_value = "512x512")]
-    pub(crate) size: Size,
-    /// Most vertices of a path
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub(crate) max_depth: u32,
-    /// Threads; 0 is one for each processor
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(crate) threads: usize,
-    /// Paths shaded at once, with commas between them [default: what suits the machine]
-    #[arg(long, value_name = "N", value_delimiter = ',')]
-    pub(crate) lanes: Vec<LaneCount>,
-}
-
-#[derive(Args)]
-pub(crate) struct TraversalArgs {
-    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) scene: Vec<PathBuf>,
-    /// One JSON object a line on standard output
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Measured rounds [default: 11]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub(crate) rounds: Option<u32>,
-    /// Width and height of the image of primary rays [default: 512x512]
-    #[arg(long, value_name = "WxH")]
-    pub(crate) size: Option<Size>,
-    /// Our kernels, with commas between them
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(crate) kernel: Vec<KernelArg>,
-    /// Our node widths, with commas between them
-    #[arg(long, value_name = "N", value_delimiter = ',')]
-    pub(crate) width: Vec<usize>,
-    /// Our precisions, with commas between them
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(crate) precision: Vec<PrecisionArg>,
-    /// Kinds of rays, with commas between them
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(crate) rays: Vec<RaysArg>,
-    /// Instruction set; Embree is limited to the same [default: the one this program was built for]
-    #[arg(long, value_enum)]
-    pub(crate) isa: Option<IsaArg>,
-    /// 3 rounds of 256x256 without obvhs and builds, which --kernel and --width leave out, too
-    #[arg(long)]
-    pub(crate) quick: bool,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum KernelArg {
-    /// One ray, many boxes
-    Single,
-    /// Many rays, one box
-    Packet,
-    /// Packets that fall apart into single rays
-    Hybrid,
-    /// One ray, one box
-    Scalar,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PrecisionArg {
-    /// May miss between triangles
-    Fast,
-    /// Closed meshes are closed
-    Watertight,
-    /// Decided without rounding
-    Exact,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum RaysArg {
-    /// Through pixels
-    Primary,
-    /// Any hit nearby, from what is seen
-    Ao,
-    /// Nearest hit, from what is seen
-    Diffuse,
-    /// Rays that hit nothing: what a call costs
-    Miss,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum IsaArg {
-    /// AVX-512
-    Avx512,
-    /// AVX2 (build with RUSTFLAGS="-C target-cpu=x86-64-v3")
-    Avx2,
+    pub(crate) args: Vec<OsString>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

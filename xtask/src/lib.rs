@@ -4,9 +4,6 @@
 
 mod args;
 mod bench;
-mod bench_compile;
-mod bench_render;
-mod bench_shading;
 mod build;
 mod cache;
 mod emit;
@@ -30,13 +27,14 @@ pub fn main() -> ExitCode {
         Command::Emit(args) => emit::run(&args),
         Command::Build(args) => build::run(&args),
         Command::Cache(command) => cache::run(command),
-        Command::Bench(command) => bench::run(&command),
+        Command::Bench(args) => return or_fail(bench::run(&args)),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    or_fail(result.map(|()| ExitCode::SUCCESS))
+}
+
+fn or_fail(result: anyhow::Result<ExitCode>) -> ExitCode {
+    result.unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::FAILURE
+    })
 }

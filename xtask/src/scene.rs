@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
-use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::desc::{SceneDesc, WarningKind};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, View, plan};
@@ -93,7 +93,7 @@ pub(crate) fn load_with_description(args: &SceneArgs) -> Result<(Plan, SceneDesc
         && plan
             .warnings
             .iter()
-            .any(|warning| warning.place.starts_with("material"))
+            .any(|warning| warning.kind == WarningKind::Unfaithful)
     {
         bail!(
             "{}: --strict: the warnings above say what is not rendered faithfully",

@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 use residual_bvh::{Hit, Ray};
 use residual_device_cpu::traversal::{Alpha, Traversal};
 
-use super::EmbreeScene;
 use super::ffi::{Arguments, Handle, INVALID_GEOMETRY_ID, RayHits, Trace1, TraceN};
+use super::library::EmbreeScene;
 use super::trace::{FlushToZero, Valid, empty, fill};
 
 /// Traces a renderer's streams with Embree: one ray a call, or 16. It knows no alpha and sees both sides of everything.

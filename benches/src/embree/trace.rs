@@ -7,14 +7,13 @@ use std::rc::Rc;
 
 use residual_bvh::Ray;
 
-use crate::contender::{Contender, Prepared};
-use crate::rays::Query;
+use crate::contender::{Contender, Prepared, Query};
 
-use super::EmbreeScene;
 use super::ffi::{
     Arguments, FEATURE_FLAG_ALL, Handle, Hits, INVALID_GEOMETRY_ID, RAY_QUERY_FLAG_COHERENT,
     RayHits, Rays, Trace1, TraceN,
 };
+use super::library::EmbreeScene;
 
 /// Which calls are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

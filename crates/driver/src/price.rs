@@ -17,7 +17,7 @@ use residual_render::alpha::AlphaTest;
 use residual_render::program::{AlphaNode, BsdfNode, LightNode, Program, ScalarNode};
 use residual_render::surface::Attributes;
 use residual_scenegen::ablation::{instead, without};
-use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
 
@@ -182,7 +182,8 @@ fn variants(
             let (scene, options) = changed.expect("there is something instead");
             let plan = plan(&scene, &options)?;
             // Without its last light a scene gets a sky, and is another scene.
-            let dark = is_light(effect) && plan.warnings.iter().any(|w| w.place == "lights");
+            let lacks_light = |warning: &Warning| warning.kind == WarningKind::NoLight;
+            let dark = is_light(effect) && plan.warnings.iter().any(lacks_light);
             if !dark {
                 plans.push((Some(effect), true, how, plan));
             }

@@ -61,7 +61,7 @@ pub fn generate(scene: impl AsRef<Path>, options: &PlanOptions) -> Result<(), Bu
     // Targets without any features have no such variable.
     let lanes = lanes(&variable("CARGO_CFG_TARGET_FEATURE").unwrap_or_default());
     let (plan, warnings) = load(scene, options)?;
-    for Warning { place, message } in &warnings {
+    for Warning { place, message, .. } in &warnings {
         // A line break would end the instruction, and the rest might be another one.
         let text = format!("{}: {place}: {message}", scene.display()).replace(['\r', '\n'], " ");
         println!("cargo::warning={text}");

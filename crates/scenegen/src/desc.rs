@@ -49,9 +49,24 @@ pub struct Dismissed {
     pub reason: String,
 }
 
+/// What a [`Warning`] is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WarningKind {
+    /// The image does not show what the file says.
+    Unfaithful,
+    /// The file has no light; a white sky takes its place.
+    NoLight,
+    /// The file has no camera; one that frames the scene takes its place.
+    NoCamera,
+    /// A mesh that nobody could see is left out.
+    Invisible,
+}
+
 /// Something of the file that the image will lack or show differently.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
+    /// What it is about.
+    pub kind: WarningKind,
     /// Where: a JSON path with the name in quotes, such as `materials/3 "Glass"`, or `line 12`.
     pub place: String,
     /// What, and what was done instead.

@@ -1,76 +1,73 @@
-//! `bench`.
+//! `bench` hands over to a program of its own, which cargo builds first. Neither is run here: scripts take their places.
 
-use serde_json::{Value, json};
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::Path;
+use std::process::{Command, Output};
 
-use super::{good, run, workplace};
+use tempfile::TempDir;
 
-/// One row for each tier at least; a row more for each way of Embree, where it is installed.
+use super::{fails, stderr};
+
+fn script(path: &Path, text: &str) {
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(path, format!("#!/bin/sh\n{text}\n")).unwrap();
+    fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+/// Runs the command line in `folder/here` with a cargo that says what it is asked for and ends with this status, and with
+/// benchmarks that say where they are and what they are asked for, and end with status 7.
+fn bench(folder: &TempDir, cargo_status: u8, args: &[&str]) -> Output {
+    let (folder, here) = (folder.path(), folder.path().join("here"));
+    fs::create_dir_all(&here).unwrap();
+    let cargo = format!("echo \"cargo $* in $PWD\"; exit {cargo_status}");
+    script(&folder.join("cargo"), &cargo);
+    let program = folder.join("target/release/residual-benches");
+    script(&program, "printf '<%s> ' \"$@\"; pwd; exit 7");
+    Command::new(env!("CARGO_BIN_EXE_residual-tests"))
+        .current_dir(&here)
+        .env("CARGO", folder.join("cargo"))
+        .env("CARGO_TARGET_DIR", "../target")
+        .arg("bench")
+        .args(args)
+        .output()
+        .unwrap()
+}
+
 #[test]
-fn renders_are_measured() {
-    let folder = workplace();
-    // A lane count that no other test compiles the same scene for meanwhile.
-    let args = "bench render --json --rounds 1 --size 16x16 --lanes 1 --scene triangle.obj";
-    let args: Vec<_> = args.split(' ').collect();
-    let text = String::from_utf8(good(run(&folder, &args)).stdout).unwrap();
-    let rows: Vec<Value> = text
-        .lines()
-        .map(|line| serde_json::from_str(line).expect("JSON"))
-        .collect();
-    for row in &rows {
-        assert_eq!(
-            (&row["scene"], &row["device"]),
-            (&json!("triangle"), &json!("cpu"))
+fn arguments_and_status_are_passed_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let cases: [&[&str]; 4] = [
+        &["traversal", "--scene", "a b.obj", "--quick"],
+        &["traversal", "--help"],
+        &["--help"],
+        &["-h"],
+    ];
+    for args in cases {
+        let output = bench(&folder, 0, args);
+        assert_eq!(output.status.code(), Some(7), "{}", stderr(&output));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let [cargo, program] = text.lines().collect::<Vec<_>>()[..] else {
+            panic!("{text}")
+        };
+        assert!(cargo.contains("--release") && cargo.contains("--package residual-benches"));
+        assert!(
+            cargo.ends_with(&format!(" in {}", workspace.display())),
+            "{cargo}"
         );
-        assert!(row["traversal"].is_string(), "{row}");
-        assert_eq!(row["lanes"], 1);
-        for number in ["msamples_per_s", "msamples_per_cpu_s", "time_to_error_s"] {
-            let value = row[number].as_f64();
-            assert!(value.is_some_and(|n| n > 0.0), "{number}: {row}");
-        }
-    }
-    for tier in ["specialized", "interpreted"] {
-        let ours = |row: &&Value| row["traversal"] == "residual" && row["tier"] == tier;
-        assert_eq!(rows.iter().filter(ours).count(), 1, "{tier}: {rows:?}");
+        let expected: String = args.iter().map(|arg| format!("<{arg}> ")).collect();
+        assert!(
+            program.starts_with(&expected) && program.ends_with("/here"),
+            "{program}"
+        );
     }
 }
 
-/// A row for each device and binding, and one for each part of our code.
 #[test]
-fn compiling_and_code_are_measured() {
-    let folder = workplace();
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell-box.gltf");
-    let args = [
-        "bench", "compile", "--json", "--rounds", "1", "--scene", scene,
-    ];
-    let text = String::from_utf8(good(run(&folder, &args)).stdout).unwrap();
-    let rows: Vec<Value> = text
-        .lines()
-        .map(|line| serde_json::from_str(line).expect("JSON"))
-        .collect();
-    let (scenes, parts): (Vec<_>, Vec<_>) = rows.iter().partition(|row| !row["scene"].is_null());
-    for binding in ["structure", "constants"] {
-        for (device, has_library) in [("cpu", true), ("wgpu", false)] {
-            let mut rows = scenes
-                .iter()
-                .filter(|row| row["device"] == device && row["binding"] == binding);
-            let (row, more) = (rows.next().expect("a row"), rows.next());
-            assert_eq!((more, &row["scene"]), (None, &json!("cornell-box")));
-            let positive = |value: &Value| value.as_f64().is_some_and(|number| number > 0.0);
-            for stage in ["plan", "emit", "compile"] {
-                assert!(positive(&row["seconds"][stage]), "{stage}: {row}");
-            }
-            assert!(
-                positive(&row["programs"]) && positive(&row["lines"]),
-                "{row}"
-            );
-            assert_eq!(positive(&row["seconds"]["cached"]), has_library, "{row}");
-            assert_eq!(positive(&row["library_kib"]), has_library, "{row}");
-        }
-    }
-    assert_eq!(scenes.len(), 4);
-    for row in &parts {
-        assert!(row["part"].is_string() && row["lines"].is_u64(), "{row}");
-        assert!(row["halstead_effort"].is_f64(), "{row}");
-    }
-    assert!(parts.iter().any(|row| row["part"] == "core"), "{parts:?}");
+fn nothing_is_measured_if_cargo_fails() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = bench(&folder, 101, &["traversal"]);
+    fails(&output, &["the benchmarks could not be built"]);
+    assert_eq!(String::from_utf8_lossy(&output.stdout).lines().count(), 1);
 }

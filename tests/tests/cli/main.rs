@@ -1,5 +1,6 @@
 //! The command line as a process: exit statuses, messages, files, statistics.
 
+#[cfg(unix)]
 mod bench;
 mod build;
 mod cache;

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use serde_json::json;
+
 use super::{fails, good, render, run, stderr, workplace};
 
 #[test]
@@ -106,4 +108,34 @@ fn what_the_scene_lacks_is_said() {
         &["cameras.gltf", "--eye", "0,0,3", "--dir", "0,0,-1"],
     )));
     assert!(!view.contains("no camera"), "{view}");
+}
+
+/// `--strict` is about what the file says, not about what it lacks.
+#[test]
+fn strict_refuses_what_is_not_rendered_faithfully() {
+    let folder = workplace();
+    good(render(&folder, &["triangle.obj", "--strict"]));
+    let glass = json!({
+        "asset": { "version": "2.0" },
+        "extensionsUsed": ["KHR_materials_transmission"],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 }] }],
+        "materials": [{
+            "name": "lights",
+            "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 0.5 },
+            "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } },
+        }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+        "buffers": [{ "byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA" }],
+        "scenes": [{ "nodes": [0] }],
+        "scene": 0,
+    });
+    fs::write(folder.path().join("glass.gltf"), glass.to_string()).unwrap();
+    let lenient = stderr(&good(render(&folder, &["glass.gltf"])));
+    assert!(lenient.contains("rough surface"), "{lenient}");
+    fails(
+        &render(&folder, &["glass.gltf", "--strict"]),
+        &["glass.gltf", "--strict"],
+    );
 }

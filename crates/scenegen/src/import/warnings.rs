@@ -1,6 +1,6 @@
 //! What an import says besides the scene: warnings, and what of the file changes nothing.
 
-use crate::desc::{Dismissed, Warning};
+use crate::desc::{Dismissed, Warning, WarningKind};
 use crate::effect::Effect;
 
 /// More warnings than this are only counted: a hostile file can cause millions.
@@ -22,6 +22,7 @@ impl Warnings {
             return;
         }
         let warning = Warning {
+            kind: WarningKind::Unfaithful,
             place: place.into(),
             message: message.into(),
         };
@@ -57,6 +58,7 @@ impl Warnings {
         if self.omitted > 0 {
             let message = format!("{} more warnings are left out", self.omitted);
             self.list.push(Warning {
+                kind: WarningKind::Unfaithful,
                 place: "warnings".into(),
                 message,
             });

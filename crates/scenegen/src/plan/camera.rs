@@ -6,7 +6,7 @@ use residual_render::domain::Buffer;
 use residual_render::scene_data::SceneData;
 
 use super::{PlanError, PlanOptions};
-use crate::desc::{CameraDesc, Projection, SceneDesc, Warning};
+use crate::desc::{CameraDesc, Projection, SceneDesc, Warning, WarningKind};
 
 /// Which camera is wanted.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -132,6 +132,7 @@ pub(super) fn place(
         CameraChoice::Default => {
             if scene.cameras.is_empty() {
                 warnings.push(Warning {
+                    kind: WarningKind::NoCamera,
                     place: "cameras".to_owned(),
                     message: "the scene has no camera; using one that frames it".to_owned(),
                 });

@@ -7,7 +7,7 @@ use residual_render::surface::{Attributes, TRIANGLE_WORDS};
 
 use super::camera::Bounds;
 use super::{Materials, PlanError, PlannedMaterial};
-use crate::desc::{InstanceDesc, MeshDesc, SceneDesc, Warning};
+use crate::desc::{InstanceDesc, MeshDesc, SceneDesc, Warning, WarningKind};
 
 /// What packing found out.
 #[derive(Debug)]
@@ -39,6 +39,7 @@ fn visible<'a>(
         let mesh = &scene.meshes[instance.mesh];
         let Some(planned) = &materials.planned[mesh.material] else {
             warnings.push(Warning {
+                kind: WarningKind::Invisible,
                 place: format!("node {:?}", instance.name),
                 message: format!(
                     "its material {:?} is transparent everywhere; left out",

@@ -17,7 +17,7 @@ use super::images::Images;
 use super::sources::Sources;
 use super::{CullingRule, MaterialUse, Materials, PlanOptions, PlannedMaterial};
 use crate::desc::{
-    AlphaMode, MaterialDesc, MetallicRoughness, Phong, SceneDesc, SurfaceDesc, Warning,
+    AlphaMode, MaterialDesc, MetallicRoughness, Phong, SceneDesc, SurfaceDesc, Warning, WarningKind,
 };
 use crate::effect::Effect;
 
@@ -300,6 +300,7 @@ impl Builder<'_> {
         }
         if self.sources.known(&surface.roughness) != Some(0.0) {
             self.warnings.push(Warning {
+                kind: WarningKind::Unfaithful,
                 place: format!("material {:?}", self.name),
                 message: "KHR_materials_transmission on a rough surface is rendered as if smooth"
                     .to_owned(),

@@ -26,7 +26,7 @@ use residual_render::tracer::TracerNode;
 pub use camera::{CameraChoice, View};
 pub use explain::{BindingTimes, Decision};
 
-use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning};
+use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
 
 /// When an input's value is known to the compiler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -174,6 +174,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     if needs_light && lights.kinds.is_empty() && scene.environment.is_none() {
         let mut plan = plan(&scene.with_white_sky(), options)?;
         plan.warnings.push(Warning {
+            kind: WarningKind::NoLight,
             place: "lights".to_owned(),
             message: "the scene has no light; using a white sky (--env FILE for another)"
                 .to_owned(),

@@ -4,12 +4,10 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::code_size::{CodeRow, code_lines, code_sizes, code_table};
+use crate::compile::{CompileRow, LibraryRow, compile_heading, compile_summary, validate_wgsl};
+use crate::measure::children_time;
 use anyhow::{Context, Result, ensure};
-use residual_benches::code_size::{CodeRow, code_lines, code_sizes, code_table};
-use residual_benches::compile::{
-    CompileRow, LibraryRow, compile_heading, compile_summary, validate_wgsl,
-};
-use residual_benches::measure::children_time;
 use residual_device_cpu::LaneCount;
 use residual_driver::cache::Cache;
 use residual_driver::compile::{Compiler, Origin, library_source};
@@ -19,10 +17,10 @@ use residual_scenegen::emit::wgsl_module;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 
-use crate::args::CompileBenchArgs;
-use crate::bench::scenes_or_own;
+use super::args::CompileBenchArgs;
+use super::scenes::scenes_or_own;
 
-pub(crate) fn run(args: &CompileBenchArgs) -> Result<()> {
+pub(super) fn run(args: &CompileBenchArgs) -> Result<()> {
     let mut rows = Vec::new();
     if !args.json {
         println!("{}", compile_heading());

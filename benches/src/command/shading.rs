@@ -1,15 +1,15 @@
 //! `cargo xtask bench shading`: what shading takes per kind of program, specialised and interpreted.
 
+use crate::measure::Pinned;
+use crate::shading::table::{interface_table, kind_table};
+use crate::shading::{plan, shading};
 use anyhow::Result;
-use residual_benches::measure::Pinned;
-use residual_benches::shading::table::{interface_table, kind_table};
-use residual_benches::shading::{plan, shading};
 use residual_device_cpu::TileRenderer;
 use residual_driver::compile;
 
-use crate::args::ShadingArgs;
+use super::args::ShadingArgs;
 
-pub(crate) fn run(args: &ShadingArgs) -> Result<()> {
+pub(super) fn run(args: &ShadingArgs) -> Result<()> {
     let plan = plan();
     let compiled = args
         .lanes

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use crate::embree::{Embree, EmbreeScene, EmbreeTraversal, Quality};
+use crate::isa::Isa;
+use crate::mesh::Mesh;
+use crate::render::{RenderContender, RenderRow, render_table, renders};
 use anyhow::{Context, Result};
-use residual_benches::embree::{Embree, EmbreeScene, EmbreeTraversal, Quality};
-use residual_benches::isa::Isa;
-use residual_benches::render::{RenderContender, RenderRow, render_table, renders};
-use residual_benches::scene::Mesh;
 use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{
     AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, Traversal,
@@ -16,10 +16,10 @@ use residual_frontend::hierarchy_quality;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, plan};
 
-use crate::args::RenderBenchArgs;
-use crate::bench::scenes_or_own;
+use super::args::RenderBenchArgs;
+use super::scenes::scenes_or_own;
 
-pub(crate) fn run(args: &RenderBenchArgs) -> Result<()> {
+pub(super) fn run(args: &RenderBenchArgs) -> Result<()> {
     let embree = match Embree::load(Isa::preferred()) {
         Ok(embree) => Some(embree),
         Err(missing) => {

@@ -1,0 +1,135 @@
+//! Arguments.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use residual_device_cpu::LaneCount;
+use residual_frontend::options::Size;
+
+use crate::isa::Isa;
+use crate::ours::{Kernel, Precision};
+use crate::rays::RayKind;
+
+/// Measures speed.
+#[derive(Parser)]
+#[command(name = "cargo xtask bench", version, arg_required_else_help = true)]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Subcommand)]
+pub(super) enum Command {
+    /// Ray queries, beside Embree's (set RESIDUAL_EMBREE_LIB) and obvhs'
+    Traversal(TraversalArgs),
+    /// Whole renders: specialized and interpreted, with our traversal and with Embree's (set RESIDUAL_EMBREE_LIB)
+    Render(RenderBenchArgs),
+    /// Shading alone, per kind of program: specialized and interpreted, with constants and with textures
+    Shading(ShadingArgs),
+    /// How soon a scene's renderer is ready: planning, emission, compiling, and from the cache. And the size of our code
+    Compile(CompileBenchArgs),
+}
+
+#[derive(Args)]
+pub(super) struct CompileBenchArgs {
+    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
+    #[arg(long, value_name = "FILE")]
+    pub(super) scene: Vec<PathBuf>,
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Measured rounds
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(super) rounds: u32,
+}
+
+#[derive(Args)]
+pub(super) struct ShadingArgs {
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Paths shaded at once, with commas between them
+    #[arg(
+        long,
+        value_name = "N",
+        value_delimiter = ',',
+        default_value = "1,4,8,16"
+    )]
+    pub(super) lanes: Vec<LaneCount>,
+    /// Measured rounds
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(super) rounds: u32,
+}
+
+#[derive(Args)]
+pub(super) struct RenderBenchArgs {
+    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
+    #[arg(long, value_name = "FILE")]
+    pub(super) scene: Vec<PathBuf>,
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Measured rounds
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(super) rounds: u32,
+    /// Samples per pixel in a round
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) spp: u32,
+    /// Width and height of the image
+    #[arg(long, value_name = "WxH", default_value = "512x512")]
+    pub(super) size: Size,
+    /// Most vertices of a path
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(super) max_depth: u32,
+    /// Threads; 0 is one for each processor
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) threads: usize,
+    /// Paths shaded at once, with commas between them [default: what suits the machine]
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    pub(super) lanes: Vec<LaneCount>,
+}
+
+#[derive(Args)]
+pub(super) struct TraversalArgs {
+    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
+    #[arg(long, value_name = "FILE")]
+    pub(super) scene: Vec<PathBuf>,
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Measured rounds [default: 11]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(super) rounds: Option<u32>,
+    /// Width and height of the image of primary rays [default: 512x512]
+    #[arg(long, value_name = "WxH")]
+    pub(super) size: Option<Size>,
+    /// Our kernels, with commas between them
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(super) kernel: Vec<Kernel>,
+    /// Our node widths, with commas between them
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    pub(super) width: Vec<usize>,
+    /// Our precisions, with commas between them
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(super) precision: Vec<Precision>,
+    /// Kinds of rays, with commas between them
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(super) rays: Vec<RayKind>,
+    /// Instruction set; Embree is limited to the same [default: the one this program was built for]
+    #[arg(long, value_enum)]
+    pub(super) isa: Option<Isa>,
+    /// 3 rounds of 256x256 without obvhs and builds, which --kernel and --width leave out, too
+    #[arg(long)]
+    pub(super) quick: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_are_consistent() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+}
