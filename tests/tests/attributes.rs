@@ -2,6 +2,7 @@
 
 use glam::{Affine3A, Mat3, Vec3, Vec4};
 use residual_render::domain::Buffer;
+use residual_render::triangle::{ObjectRecord, TriangleRecord};
 use residual_scenegen::desc::{
     AlphaMode, Filter, InstanceDesc, MaterialDesc, MeshDesc, NormalMap, Phong, ScalarInput,
     SceneDesc, SurfaceDesc, TextureUse, Wrap,
@@ -253,6 +254,51 @@ fn triangles_find_their_own_vertices() {
         }
     }
     assert_eq!(triangle, plan.data.triangle_count());
+}
+
+/// Transparent instances are no objects, and the materials of objects are stored when they are asked for.
+#[test]
+fn triangles_know_their_objects() {
+    let mut scene = scene();
+    let clear = scene.materials.len();
+    scene.materials.push(MaterialDesc {
+        alpha_mode: AlphaMode::Blend,
+        alpha: scalar(0.0),
+        ..material("clear", matte([0.5; 3]))
+    });
+    scene.meshes.push(MeshDesc {
+        material: clear,
+        ..scene.meshes[0].clone()
+    });
+    let invisible = InstanceDesc {
+        name: "clear".to_owned(),
+        mesh: scene.meshes.len() - 1,
+        transform: transform(0),
+    };
+    scene.instances.insert(2, invisible);
+    let mut plan = planned(&scene);
+    let expected = PLACED.iter().enumerate().flat_map(|(object, &mesh)| {
+        let triangles = scene.meshes[mesh].triangles.len();
+        std::iter::repeat_n(object as u32, triangles)
+    });
+    let expected: Vec<u32> = expected.collect();
+    let objects = |plan: &Plan| -> Vec<u32> {
+        let triangles = plan.data.records::<TriangleRecord>();
+        triangles.map(|triangle| triangle.object).collect()
+    };
+    assert_eq!(objects(&plan), expected);
+    for (index, object) in plan.objects.iter().enumerate() {
+        assert_eq!(object.name, format!("node {index}"));
+    }
+
+    assert!(plan.data.buffer(Buffer::Objects).is_empty());
+    plan.pack_objects();
+    let stored: Vec<ObjectRecord> = plan.data.records().collect();
+    let material = |mesh: usize| scene.meshes[mesh].material as u32;
+    let material = |&mesh: &usize| ObjectRecord {
+        material: material(mesh),
+    };
+    assert_eq!(stored, PLACED.iter().map(material).collect::<Vec<_>>());
 }
 
 /// Where nobody reads anything there are no vertices, not even their numbers.

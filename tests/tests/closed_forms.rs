@@ -17,6 +17,7 @@ use residual_render::scene_data::SceneData;
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 use residual_render::tracer::TracerNode;
+use residual_render::triangle::TriangleRecord;
 
 type Triangle = [[f32; 3]; 3];
 
@@ -53,7 +54,7 @@ fn scene(
 ) -> (Structure, SceneData) {
     let mut data = SceneData::default();
     for &(triangle, program) in triangles {
-        data.push_triangle(triangle, program, 0);
+        data.push_triangle(TriangleRecord::new(triangle), program);
     }
     *data.buffer_mut(Buffer::Camera) = words(&camera);
     data.single_sided = vec![false; triangles.len()];

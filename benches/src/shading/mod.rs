@@ -65,6 +65,7 @@ pub fn plan() -> Plan {
         },
         data: stream::data(&params),
         materials: programs().map(uses).collect(),
+        objects: Vec::new(),
         lights: vec![LightKindUse {
             count: 2,
             sources: Vec::new(),

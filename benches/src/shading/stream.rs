@@ -10,6 +10,7 @@ use residual_device_cpu::traversal::Alpha;
 use residual_render::domain::Buffer;
 use residual_render::light::{ALIAS_HEADER, RECORD};
 use residual_render::scene_data::SceneData;
+use residual_render::triangle::TriangleRecord;
 
 use crate::rays::random;
 
@@ -59,7 +60,11 @@ pub(super) fn data(params_of_programs: &[Vec<u32>]) -> SceneData {
                 [(x, y), (x + 1, y), (x + 1, y + 1)],
                 [(x, y), (x + 1, y + 1), (x, y + 1)],
             ] {
-                data.push_triangle(corners.map(|(x, y)| corner(x, y)), program as u32, first);
+                let triangle = TriangleRecord {
+                    params: first,
+                    ..TriangleRecord::new(corners.map(|(x, y)| corner(x, y)))
+                };
+                data.push_triangle(triangle, program as u32);
                 let [a, b, c] = corners.map(|(x, y)| vertex(x, y));
                 data.buffer_mut(Buffer::Indices).extend([a, b, c, 0]);
             }

@@ -11,6 +11,7 @@ pub mod light;
 pub mod material;
 pub mod math;
 pub mod program;
+pub mod record;
 pub mod sampler;
 pub mod scene;
 pub mod scene_data;
@@ -18,5 +19,6 @@ mod scene_file;
 pub mod surface;
 pub mod texture;
 pub mod tracer;
+pub mod triangle;
 
 pub use scene_file::NotSceneData;

@@ -1,8 +1,8 @@
 //! A scene's data: the dynamic half of a scene, whose static half is its `program::Structure`.
 
 use crate::domain::{Buffer, Buffers};
-use crate::light::NO_LIGHT;
-use crate::surface::TRIANGLE_WORDS;
+use crate::record::IndexedRecord;
+use crate::triangle::TriangleRecord;
 
 /// The buffers of a scene, owned, and what traversal needs beside them.
 #[derive(Clone, Debug, Default)]
@@ -30,20 +30,43 @@ impl SceneData {
         Buffers::new(self.buffers.each_ref().map(Vec::as_slice))
     }
 
-    /// Adds a triangle that is no light. Its attributes, if any, are the vertices that are added to
-    /// [`Buffer::Indices`].
-    pub fn push_triangle(&mut self, corners: [[f32; 3]; 3], program: u32, params: u32) {
-        let last_words = [params, NO_LIGHT, 0];
-        for (corner, last) in corners.into_iter().zip(last_words) {
-            let [x, y, z] = corner.map(f32::to_bits);
-            self.buffer_mut(Buffer::Triangles).extend([x, y, z, last]);
-        }
+    /// Appends a record to the buffer that holds its kind.
+    pub fn push<R: IndexedRecord>(&mut self, record: R) {
+        record.append_to(self.buffer_mut(R::BUFFER));
+    }
+
+    /// All records of the buffer that holds their kind.
+    pub fn records<R: IndexedRecord>(&self) -> impl ExactSizeIterator<Item = R> {
+        let words = self.buffer(R::BUFFER).chunks_exact(R::WORDS as usize);
+        words.map(R::from_words)
+    }
+
+    /// The record with this index.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn record<R: IndexedRecord>(&self, index: usize) -> R {
+        R::from_words(&self.buffer(R::BUFFER)[index * R::WORDS as usize..])
+    }
+
+    /// Replaces the record with this index by what `change` makes of it.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn change<R: IndexedRecord>(&mut self, index: usize, change: impl FnOnce(R) -> R) {
+        let words = &mut self.buffer_mut(R::BUFFER)[index * R::WORDS as usize..];
+        change(R::from_words(words)).write_to(words);
+    }
+
+    /// Adds a triangle. Its attributes, if any, are the vertices that are added to [`Buffer::Indices`].
+    pub fn push_triangle(&mut self, triangle: TriangleRecord, program: u32) {
+        self.push(triangle);
         self.buffer_mut(Buffer::TrianglePrograms).push(program);
     }
 
     /// Makes a triangle a light.
     pub fn set_light(&mut self, triangle: usize, light: u32) {
-        self.buffer_mut(Buffer::Triangles)[triangle * TRIANGLE_WORDS as usize + 7] = light;
+        self.change(triangle, |record| TriangleRecord { light, ..record });
     }
 
     /// How many triangles there are.
@@ -53,10 +76,8 @@ impl SceneData {
 
     /// Positions of the corners, three a triangle.
     pub fn positions(&self) -> Vec<[f32; 3]> {
-        let (rows, _) = self.buffer(Buffer::Triangles).as_chunks();
-        rows.iter()
-            .map(|&[x, y, z, _]| [x, y, z].map(f32::from_bits))
-            .collect()
+        let triangles = self.records::<TriangleRecord>();
+        triangles.flat_map(|triangle| triangle.corners()).collect()
     }
 
     /// The corners of the triangles among [`SceneData::positions`].

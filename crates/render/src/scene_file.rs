@@ -4,7 +4,7 @@ use crate::domain::Buffer;
 use crate::scene_data::SceneData;
 
 /// Raised whenever the meaning of buffers changes.
-const MAGIC: [u8; 8] = *b"RSCENE02";
+const MAGIC: [u8; 8] = *b"RSCENE03";
 
 /// Bytes that are no scene data, or another version's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,11 +75,17 @@ fn part<'a>(bytes: &mut &'a [u8], size: usize) -> Result<&'a [u8], NotSceneData>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::triangle::TriangleRecord;
 
     #[test]
     fn data_read_back_and_damage_is_noticed() {
         let mut data = SceneData::default();
-        data.push_triangle([[0.0; 3], [1.0; 3], [2.0, 3.0, 4.0]], 5, 6);
+        let corners = [[0.0; 3], [1.0; 3], [2.0, 3.0, 4.0]];
+        let triangle = TriangleRecord {
+            params: 6,
+            ..TriangleRecord::new(corners)
+        };
+        data.push_triangle(triangle, 5);
         data.lets_through = vec![true];
         let bytes = data.to_bytes();
         let read = SceneData::from_bytes(&bytes).unwrap();

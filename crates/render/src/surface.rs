@@ -3,6 +3,7 @@
 use crate::domain::{Buffer, Domain};
 use crate::math::vec3::vec3;
 use crate::math::{Frame, Vec3};
+use crate::triangle::TriangleRecord;
 
 /// A ray with as many lanes as its domain. The interval is [0, tmax] in units of `dir`.
 #[derive(Clone, Copy, Debug)]
@@ -100,14 +101,13 @@ pub struct Surface<D: Domain> {
     pub alpha: D::F,
     /// First word of the material's parameters.
     pub params: D::U,
-    /// The light's number, or [`NO_LIGHT`](crate::light::NO_LIGHT).
+    /// Index of the light that the triangle is, or [`NO_LIGHT`](crate::triangle::NO_LIGHT).
     pub light: D::U,
+    /// Index of the object that the triangle belongs to.
+    pub object: D::U,
     /// Inputs of a boxed program, evaluated once per point. Unused, and optimised away, in emitted programs.
     pub inputs: [Vec3<D::F>; MAX_INPUTS],
 }
-
-/// Words of a triangle in [`Buffer::Triangles`].
-pub const TRIANGLE_WORDS: u32 = 12;
 
 /// The place of a hit on its triangle.
 struct Place<D: Domain> {
@@ -118,8 +118,7 @@ struct Place<D: Domain> {
     error: Vec3<D::F>,
     /// The triangle's normal; its length is twice the area.
     normal: Vec3<D::F>,
-    params: D::U,
-    light: D::U,
+    triangle: TriangleRecord<D>,
 }
 
 impl<D: Domain> Place<D> {
@@ -127,14 +126,9 @@ impl<D: Domain> Place<D> {
     /// section 6.8.4).
     #[inline(always)]
     fn new(d: D, hit: &Hit<D>) -> Self {
-        let first = hit.prim * d.uint(TRIANGLE_WORDS);
-        let [row0, row1, row2] = d.load_rows(Buffer::Triangles, first);
+        let triangle = TriangleRecord::load(d, hit.prim);
         let weights = [d.lit(1.0) - hit.u - hit.v, hit.u, hit.v];
-        let [a, b, c] = [
-            Vec3::from_row(d, row0),
-            Vec3::from_row(d, row1),
-            Vec3::from_row(d, row2),
-        ];
+        let [a, b, c] = [triangle.a, triangle.b, triangle.c];
         let (wa, wb, wc) = (
             a.scale(weights[0]),
             b.scale(weights[1]),
@@ -147,8 +141,7 @@ impl<D: Domain> Place<D> {
             point: wa + wb + wc,
             error: (magnitude(wa) + magnitude(wb) + magnitude(wc)).scale(gamma),
             normal: (b - a).cross(c - a),
-            params: row0[3],
-            light: row1[3],
+            triangle,
         }
     }
 }
@@ -286,8 +279,9 @@ impl<D: Domain> Surface<D> {
             uv,
             color,
             alpha,
-            params: place.params,
-            light: place.light,
+            params: place.triangle.params,
+            light: place.triangle.light,
+            object: place.triangle.object,
             inputs: [Vec3::splat(zero); MAX_INPUTS],
         }
     }

@@ -81,10 +81,9 @@ impl<T> Mask for T where T: Copy + BitAnd<Output = T> + BitOr<Output = T> + Not<
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(usize)]
 pub enum Buffer {
-    /// Three rows a triangle: a corner's x, y, z each, and behind them the first word of the material's parameters,
-    /// the light's number or `u32::MAX`, and 0.
+    /// A [`TriangleRecord`](crate::triangle::TriangleRecord) each.
     Triangles,
-    /// Its program, a triangle.
+    /// A triangle's program: a word each; see [`program_of`](crate::triangle::program_of).
     TrianglePrograms,
     /// The numbers of three vertices and 0, a triangle. Only where attributes are read.
     Indices,
@@ -109,11 +108,13 @@ pub enum Buffer {
     Environment,
     /// The camera.
     Camera,
+    /// An [`ObjectRecord`](crate::triangle::ObjectRecord) each. Only where a renderer asks for the materials of objects.
+    Objects,
 }
 
 impl Buffer {
     /// How many there are.
-    pub const COUNT: usize = Self::Camera as usize + 1;
+    pub const COUNT: usize = Self::Objects as usize + 1;
 
     /// All of them, in order.
     pub const ALL: [Self; Self::COUNT] = [
@@ -130,6 +131,7 @@ impl Buffer {
         Self::LightAlias,
         Self::Environment,
         Self::Camera,
+        Self::Objects,
     ];
 }
 

@@ -19,6 +19,7 @@ pub use punctual::{Directional, Point, Spot};
 use crate::domain::{Buffer, Bundle, Domain};
 use crate::math::{Color, Vec3};
 use crate::surface::{Ray, Surface};
+pub use crate::triangle::NO_LIGHT;
 
 /// Words of a light's record.
 pub const RECORD: u32 = 12;
@@ -26,8 +27,6 @@ pub const RECORD: u32 = 12;
 pub const ALIAS_ENTRY: u32 = 4;
 /// Words before the entries of the lights' alias table.
 pub const ALIAS_HEADER: u32 = 4;
-/// In [`Buffer::Triangles`]: the triangle is no light.
-pub const NO_LIGHT: u32 = u32::MAX;
 
 /// Light arriving at a point from one sampled direction.
 #[derive(Clone, Copy, Debug)]

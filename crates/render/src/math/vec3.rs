@@ -24,6 +24,21 @@ pub fn vec3<F>(x: F, y: F, z: F) -> Vec3<F> {
     Vec3 { x, y, z }
 }
 
+impl<F> From<[F; 3]> for Vec3<F> {
+    #[inline(always)]
+    fn from([x, y, z]: [F; 3]) -> Self {
+        vec3(x, y, z)
+    }
+}
+
+impl<F> Vec3<F> {
+    /// The components in order.
+    #[inline(always)]
+    pub fn to_array(self) -> [F; 3] {
+        [self.x, self.y, self.z]
+    }
+}
+
 impl<F: Real> Vec3<F> {
     /// All three components the same.
     #[inline(always)]

@@ -6,6 +6,7 @@ use residual_render::domain::{Buffer, Domain};
 use residual_render::light::environment::HEADER;
 use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD};
 use residual_render::scene_data::SceneData;
+use residual_render::triangle::TriangleRecord;
 
 /// Words of a triangle's parameters.
 pub(crate) const BLOCK: u32 = 64;
@@ -76,7 +77,11 @@ pub(crate) fn scene() -> SceneData {
     fill(Buffer::Environment, HEADER + ALIAS_ENTRY * 12, 0.1, 1.0);
     for triangle in 0..TRIANGLES {
         let corners = [[0; 3]; 3].map(|corner| corner.map(|_| random.between(-2.0, 2.0)));
-        data.push_triangle(corners, 0, BLOCK * triangle);
+        let record = TriangleRecord {
+            params: BLOCK * triangle,
+            ..TriangleRecord::new(corners)
+        };
+        data.push_triangle(record, 0);
         if triangle > 0 {
             data.set_light(triangle as usize, 0);
         }

@@ -5,6 +5,7 @@ use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD, environment};
 use residual_render::math::vec3::vec3;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, Hit, Surface};
+use residual_render::triangle::TriangleRecord;
 
 use super::alias::alias_table;
 
@@ -22,7 +23,7 @@ fn reals<'a>(values: impl IntoIterator<Item = &'a f32>) -> Vec<u32> {
 pub(crate) fn scene(triangles: &[Triangle]) -> SceneData {
     let mut data = SceneData::default();
     for &triangle in triangles {
-        data.push_triangle(triangle, 0, 0);
+        data.push_triangle(TriangleRecord::new(triangle), 0);
     }
     data
 }

@@ -2,7 +2,7 @@
 
 use residual_render::domain::Buffer;
 use residual_render::program::{ColorNode, Program, ScalarNode, SourceNode};
-use residual_render::surface::TRIANGLE_WORDS;
+use residual_render::triangle::TriangleRecord;
 
 use super::{Binding, Plan};
 
@@ -122,7 +122,7 @@ impl Plan {
     }
 
     fn triangles(&self) -> String {
-        let bytes = TRIANGLE_WORDS * 4;
+        let bytes = TriangleRecord::WORDS * 4;
         let indexed = match self.data.buffer(Buffer::Indices).is_empty() {
             true => "without vertices: no program reads any attribute",
             false => "and 16 for their vertices",

@@ -3,18 +3,18 @@
 use glam::{Mat3, Vec3, Vec4};
 use residual_render::domain::Buffer;
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{Attributes, TRIANGLE_WORDS};
+use residual_render::surface::Attributes;
+use residual_render::triangle::TriangleRecord;
 
 use super::camera::Bounds;
-use super::{Materials, PlanError, PlannedMaterial};
+use super::{Materials, PlanError, PlannedMaterial, PlannedObject};
 use crate::desc::{InstanceDesc, MeshDesc, SceneDesc, Warning, WarningKind};
 
 /// What packing found out.
 #[derive(Debug)]
 pub(super) struct Geometry {
     pub(super) bounds: Bounds,
-    /// Triangle ranges of instances with their materials, in order.
-    pub(super) ranges: Vec<(std::ops::Range<u32>, usize)>,
+    pub(super) objects: Vec<PlannedObject>,
 }
 
 /// An instance that is seen, with what its material reads.
@@ -49,7 +49,7 @@ fn visible<'a>(
             continue;
         };
         triangles += mesh.triangles.len() as u64;
-        if triangles * u64::from(TRIANGLE_WORDS) > u64::from(u32::MAX) {
+        if triangles * u64::from(TriangleRecord::WORDS) > u64::from(u32::MAX) {
             return Err(PlanError::TooLarge { what: "triangles" });
         }
         let program = &materials.programs[planned.program as usize];
@@ -110,20 +110,24 @@ pub(super) fn pack(
     pack_vertices(&mut visible, data)?;
     let has_vertices = visible.iter().any(|seen| seen.reads != Attributes::NONE);
     let mut bounds = Bounds::EMPTY;
-    let mut ranges = Vec::new();
-    for seen in &visible {
+    let mut objects = Vec::new();
+    for (object_index, seen) in (0..).zip(&visible) {
         let start = data.triangle_count() as u32;
         let transform = &seen.instance.transform;
         let positions = seen.mesh.positions.iter();
         let positions: Vec<Vec3> = positions.map(|&p| transform.transform_point3(p)).collect();
         positions.iter().for_each(|&p| bounds.add(p));
-        pack_triangles(seen, &positions, data);
+        pack_triangles(object_index, seen, &positions, data);
         if has_vertices {
             pack_indices(seen, data);
         }
-        ranges.push((start..data.triangle_count() as u32, seen.mesh.material));
+        objects.push(PlannedObject {
+            name: seen.instance.name.clone(),
+            material: seen.mesh.material,
+            triangles: start..data.triangle_count() as u32,
+        });
     }
-    Ok(Geometry { bounds, ranges })
+    Ok(Geometry { bounds, objects })
 }
 
 /// Numbers the vertices and writes the buffers of attributes. Vertices whose material reads nothing are none; those
@@ -225,11 +229,16 @@ fn turned(mesh: &MeshDesc, instance: &InstanceDesc) -> impl Iterator<Item = [u32
     mesh.triangles.iter().map(turn)
 }
 
-fn pack_triangles(seen: &Visible<'_>, positions: &[Vec3], data: &mut SceneData) {
+fn pack_triangles(object_index: u32, seen: &Visible<'_>, positions: &[Vec3], data: &mut SceneData) {
     let planned = seen.planned;
     for triangle in turned(seen.mesh, seen.instance) {
         let corners = triangle.map(|corner| positions[corner as usize].to_array());
-        data.push_triangle(corners, planned.program, planned.params);
+        let triangle = TriangleRecord {
+            params: planned.params,
+            object: object_index,
+            ..TriangleRecord::new(corners)
+        };
+        data.push_triangle(triangle, planned.program);
     }
     let count = data.triangle_count();
     data.single_sided.resize(count, planned.culled);

@@ -107,8 +107,9 @@ impl PlannedLights {
         data: &mut SceneData,
     ) {
         let positions = data.positions();
-        for (range, material) in &geometry.ranges {
-            let planned = materials.of(*material);
+        for object in &geometry.objects {
+            let material = object.material;
+            let planned = materials.of(material);
             let program = &materials.programs[planned.program as usize];
             let Some(emission) = program.emission else {
                 continue;
@@ -120,11 +121,11 @@ impl PlannedLights {
                 emission: source.clone(),
                 attributes: reads(source, program.attributes),
             };
-            let radiance = mean_emission(scene, &scene.materials[*material].emission);
+            let radiance = mean_emission(scene, &scene.materials[material].emission);
             let sides = if emission.double_sided { 2.0 } else { 1.0 };
-            let source = format!("material {:?}", scene.materials[*material].name);
+            let source = format!("material {:?}", scene.materials[material].name);
             let mut kind = None;
-            for prim in range.clone() {
+            for prim in object.triangles.clone() {
                 let corners = [0, 1, 2].map(|corner| {
                     glam::DVec3::from_array(positions[3 * prim as usize + corner].map(f64::from))
                 });

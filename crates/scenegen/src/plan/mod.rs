@@ -15,6 +15,7 @@ mod materials;
 mod sources;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use residual_render::domain::Buffer;
 use residual_render::layer::Layers;
@@ -22,6 +23,7 @@ use residual_render::program::{Program, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
 use residual_render::tracer::TracerNode;
+use residual_render::triangle::ObjectRecord;
 
 pub use camera::{CameraChoice, View};
 pub use explain::{BindingTimes, Decision};
@@ -98,6 +100,8 @@ pub struct Plan {
     pub data: SceneData,
     /// For each program, the materials that use it.
     pub materials: Vec<Vec<MaterialUse>>,
+    /// What is seen, in the order of its triangles: a triangle's object is an index into this list.
+    pub objects: Vec<PlannedObject>,
     /// For each kind of light, the lights of that kind.
     pub lights: Vec<LightKindUse>,
     /// The camera that was chosen.
@@ -108,6 +112,28 @@ pub struct Plan {
     pub warnings: Vec<Warning>,
     /// What the scene has and the image does not need.
     pub dismissed: Vec<Dismissed>,
+}
+
+impl Plan {
+    /// Fills [`Buffer::Objects`], which is empty unless a renderer asks for the materials of objects.
+    pub fn pack_objects(&mut self) {
+        self.data.buffer_mut(Buffer::Objects).clear();
+        for object in &self.objects {
+            let material = object.material as u32;
+            self.data.push(ObjectRecord { material });
+        }
+    }
+}
+
+/// An instance of a mesh that is seen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlannedObject {
+    /// The instance's name.
+    pub name: String,
+    /// Index of its material in the description.
+    pub material: usize,
+    /// Its triangles.
+    pub triangles: Range<u32>,
 }
 
 /// A material that uses a program.
@@ -199,6 +225,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         },
         data,
         materials: materials.uses,
+        objects: geometry.objects,
         lights: lights.uses,
         camera_name,
         diagonal: 2.0 * geometry.bounds.sphere().1,

@@ -1,0 +1,306 @@
+//! Records: what buffers hold, each defined once, with its reader and its writer.
+//!
+//! [`record!`] declares a record as rows of four words, since lanes read rows (see [`Domain::load_rows`]). The struct that
+//! it makes is generic over [`Numbers`]: over a domain it is what a formula has loaded, over [`Plain`] it is what a planner
+//! writes and a test reads back.
+
+use crate::domain::{Buffer, Domain};
+use crate::math::Vec3;
+use crate::math::vec3::vec3;
+
+/// The numbers that a record is made of: a domain's, or plain ones.
+pub trait Numbers: Copy {
+    /// Real numbers.
+    type F: Copy;
+    /// 32-bit words.
+    type U: Copy;
+    /// The real number whose bits a word has.
+    fn real(self, word: Self::U) -> Self::F;
+}
+
+impl<D: Domain> Numbers for D {
+    type F = D::F;
+    type U = D::U;
+    #[inline(always)]
+    fn real(self, word: D::U) -> D::F {
+        self.from_bits(word)
+    }
+}
+
+/// Plain numbers, `f32` and `u32`: records outside formulas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plain;
+
+impl Numbers for Plain {
+    type F = f32;
+    type U = u32;
+    #[inline(always)]
+    fn real(self, word: u32) -> f32 {
+        f32::from_bits(word)
+    }
+}
+
+/// In place of its value, a field has the word of the record at which it lies: for formulas that read one field alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offsets;
+
+impl Numbers for Offsets {
+    type F = u32;
+    type U = u32;
+    #[inline(always)]
+    fn real(self, word: u32) -> u32 {
+        word
+    }
+}
+
+/// A record of plain numbers, which can be written to a buffer and read back.
+pub trait BufferRecord: Copy {
+    /// Words that it occupies, a multiple of four. Those that no field has are 0.
+    const WORDS: u32;
+
+    /// Writes the record to the first [`WORDS`](BufferRecord::WORDS) of `words`.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    fn write_to(self, words: &mut [u32]);
+
+    /// Reads the record from the first [`WORDS`](BufferRecord::WORDS) of `words`.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    fn from_words(words: &[u32]) -> Self;
+
+    /// Appends the record to a buffer.
+    fn append_to(self, buffer: &mut Vec<u32>) {
+        let first = buffer.len();
+        buffer.resize(first + Self::WORDS as usize, 0);
+        self.write_to(&mut buffer[first..]);
+    }
+}
+
+/// A record of which a buffer is an array.
+pub trait IndexedRecord: BufferRecord {
+    /// The buffer.
+    const BUFFER: Buffer;
+}
+
+/// The words of a record in rows: 0, 1, 2, 3; 4, …
+#[inline(always)]
+pub(crate) fn words_of_rows<const ROWS: usize>() -> [[u32; 4]; ROWS] {
+    std::array::from_fn(|row| [0, 1, 2, 3].map(|word| 4 * row as u32 + word))
+}
+
+/// Takes the fields of a record off its rows, one after the other.
+pub(crate) struct RowReader<N: Numbers, const ROWS: usize> {
+    numbers: N,
+    rows: [[N::U; 4]; ROWS],
+    next: usize,
+}
+
+impl<N: Numbers, const ROWS: usize> RowReader<N, ROWS> {
+    #[inline(always)]
+    pub(crate) fn new(numbers: N, rows: [[N::U; 4]; ROWS]) -> Self {
+        Self {
+            numbers,
+            rows,
+            next: 0,
+        }
+    }
+
+    /// What was read last ends its row.
+    #[inline(always)]
+    pub(crate) fn end_row(&mut self) {
+        self.next = self.next.next_multiple_of(4);
+    }
+
+    #[inline(always)]
+    pub(crate) fn word(&mut self) -> N::U {
+        let word = self.rows[self.next / 4][self.next % 4];
+        self.next += 1;
+        word
+    }
+
+    #[inline(always)]
+    pub(crate) fn real(&mut self) -> N::F {
+        let word = self.word();
+        self.numbers.real(word)
+    }
+
+    #[inline(always)]
+    pub(crate) fn vector(&mut self) -> Vec3<N::F> {
+        let [x, y, z] = [self.real(), self.real(), self.real()];
+        vec3(x, y, z)
+    }
+}
+
+/// Puts the fields of a record into words, one after the other.
+pub(crate) struct RowWriter<'a> {
+    words: &'a mut [u32],
+    next: usize,
+}
+
+impl<'a> RowWriter<'a> {
+    pub(crate) fn new(words: &'a mut [u32]) -> Self {
+        words.fill(0);
+        Self { words, next: 0 }
+    }
+
+    /// What was written last ends its row.
+    pub(crate) fn end_row(&mut self) {
+        self.next = self.next.next_multiple_of(4);
+    }
+
+    pub(crate) fn word(&mut self, value: u32) {
+        self.words[self.next] = value;
+        self.next += 1;
+    }
+
+    pub(crate) fn real(&mut self, value: f32) {
+        self.word(value.to_bits());
+    }
+
+    pub(crate) fn vector(&mut self, value: Vec3<f32>) {
+        for component in value.to_array() {
+            self.real(component);
+        }
+    }
+}
+
+/// How many words a kind of field has, and its type.
+macro_rules! field {
+    (words: vector) => {
+        3
+    };
+    (words: $single:ident) => {
+        1
+    };
+    (type of $n:ident: vector) => {
+        $crate::math::Vec3<$n::F>
+    };
+    (type of $n:ident: real) => {
+        $n::F
+    };
+    (type of $n:ident: word) => {
+        $n::U
+    };
+}
+pub(crate) use field;
+
+/// Declares a record by its rows. A row has up to four words: a `word` is one, a `real` one, a `vector` of reals three; those
+/// left over at its end are 0. With `in Buffer`, that buffer is an array of such records.
+macro_rules! record {
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident $(in $buffer:ident)? {
+            $( row { $( $(#[$field_meta:meta])* $field:ident: $kind:ident ),+ $(,)? } )+
+        }
+    ) => {
+        $(#[$meta])*
+        pub struct $name<N: $crate::record::Numbers = $crate::record::Plain> {
+            $( $( $(#[$field_meta])* pub $field: $crate::record::field!(type of N: $kind), )+ )+
+        }
+
+        const _: () = {
+            $( assert!(0 $( + $crate::record::field!(words: $kind) )+ <= 4, "a row has four words"); )+
+        };
+
+        impl $name {
+            /// Rows of four words that it occupies.
+            pub const ROWS: usize = [$( 0 $( + $crate::record::field!(words: $kind) )+ ),+].len();
+            /// Words that it occupies.
+            pub const WORDS: u32 = 4 * Self::ROWS as u32;
+        }
+
+        impl<N: $crate::record::Numbers> $name<N> {
+            #[inline(always)]
+            fn from_rows(numbers: N, rows: [[N::U; 4]; $name::<$crate::record::Plain>::ROWS]) -> Self {
+                let mut reader = $crate::record::RowReader::new(numbers, rows);
+                $( $( let $field = reader.$kind(); )+ reader.end_row(); )+
+                Self { $( $( $field ),+ ),+ }
+            }
+        }
+
+        impl $name<$crate::record::Offsets> {
+            /// For each field, the word of the record at which it lies.
+            #[inline(always)]
+            #[allow(dead_code, reason = "few records have fields that are read alone")]
+            pub fn offsets() -> Self {
+                Self::from_rows($crate::record::Offsets, $crate::record::words_of_rows())
+            }
+        }
+
+        impl<D: $crate::domain::Domain> $name<D> {
+            /// The record that starts at word `first` of a buffer.
+            #[inline(always)]
+            #[allow(dead_code, reason = "records are read in one of several ways")]
+            pub fn load_at(d: D, buffer: $crate::domain::Buffer, first: D::U) -> Self {
+                Self::from_rows(d, d.load_rows(buffer, first))
+            }
+
+            /// The record that starts at word `first` of a buffer, the same for all lanes.
+            #[inline(always)]
+            #[allow(dead_code, reason = "records are read in one of several ways")]
+            pub fn uniform_at(d: D, buffer: $crate::domain::Buffer, first: u32) -> Self {
+                let words = $crate::record::words_of_rows();
+                Self::from_rows(d, words.map(|row| row.map(|word| d.uniform(buffer, first + word))))
+            }
+        }
+
+        $(
+            impl $crate::record::IndexedRecord for $name {
+                const BUFFER: $crate::domain::Buffer = $crate::domain::Buffer::$buffer;
+            }
+
+            impl<D: $crate::domain::Domain> $name<D> {
+                /// The record with this index.
+                #[inline(always)]
+                #[allow(dead_code, reason = "records are read in one of several ways")]
+                pub fn load(d: D, index: D::U) -> Self {
+                    let first = index * d.uint($name::<$crate::record::Plain>::WORDS);
+                    Self::load_at(d, $crate::domain::Buffer::$buffer, first)
+                }
+            }
+        )?
+
+        // By hand, since types that a macro makes cannot be derived for.
+        impl<N: $crate::record::Numbers> Clone for $name<N> {
+            #[inline(always)]
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+
+        impl<N: $crate::record::Numbers> Copy for $name<N> {}
+
+        impl std::fmt::Debug for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                let mut fields = f.debug_struct(stringify!($name));
+                $( $( fields.field(stringify!($field), &self.$field); )+ )+
+                fields.finish()
+            }
+        }
+
+        impl PartialEq for $name {
+            fn eq(&self, other: &Self) -> bool {
+                true $( $( && self.$field == other.$field )+ )+
+            }
+        }
+
+        impl $crate::record::BufferRecord for $name {
+            const WORDS: u32 = $name::<$crate::record::Plain>::WORDS;
+
+            fn write_to(self, words: &mut [u32]) {
+                let words = &mut words[..4 * Self::ROWS];
+                let mut writer = $crate::record::RowWriter::new(words);
+                $( $( writer.$kind(self.$field); )+ writer.end_row(); )+
+            }
+
+            fn from_words(words: &[u32]) -> Self {
+                let (rows, _) = words.as_chunks();
+                let rows = rows.first_chunk().expect("as many words as the record has");
+                Self::from_rows($crate::record::Plain, *rows)
+            }
+        }
+    };
+}
+pub(crate) use record;
