@@ -84,7 +84,8 @@ pub(crate) struct SceneArgs {
     /// What --tracer debug shows
     #[arg(long, value_enum, default_value_t = ViewArg::Normals)]
     pub(crate) view: ViewArg,
-    /// Layers of an EXR beside radiance, with commas between them: albedo, normal, depth, position, sample_count
+    /// Layers of an EXR beside radiance, with commas between them: albedo, normal, depth, position, object_index,
+    /// material_index, sample_count
     #[arg(long, value_name = "LAYER", value_delimiter = ',')]
     pub(crate) aov: Vec<Layer>,
     /// When a material's numbers are known to the compiler

@@ -64,6 +64,10 @@ layers! {
     Depth = "depth", ["Z"], First;
     /// The point seen, world space.
     Position = "position", ["X", "Y", "Z"], First;
+    /// Index of the object (an instance of a mesh), counted from 1; 0 where nothing is seen.
+    ObjectIndex = "object_index", ["X"], First;
+    /// Index of the material in the file, counted from 1; 0 where nothing is seen.
+    MaterialIndex = "material_index", ["X"], First;
     /// How many samples the pixel has.
     SampleCount = "sample_count", ["X"], Count;
 }
@@ -178,7 +182,7 @@ mod tests {
             }
             assert_eq!(layers.stride(), next, "{bits:b}");
         }
-        assert_eq!(Layers::MAX_STRIDE, 13);
+        assert_eq!(Layers::MAX_STRIDE, 15);
     }
 
     #[test]

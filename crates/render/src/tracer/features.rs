@@ -4,6 +4,7 @@ use super::{Path, Vertex};
 use crate::bsdf::Bsdf;
 use crate::domain::Domain;
 use crate::layer::{FAR, Layer, Layers};
+use crate::triangle::ObjectRecord;
 
 /// Numbers of the layers that a renderer has: the channels of a sample behind its radiance.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +28,9 @@ impl<D: Domain> Features<D> {
         let mut put = |layer, values: &[D::F]| features.put(layers, layer, values);
         if layers.has(Layer::Albedo) {
             let wo = surface.frame.to_local(d, vertex.wo);
+            // Denoisers take no more than 1, which files may have.
             let albedo = vertex.bsdf.albedo(d, surface, wo);
+            let albedo = albedo.map(|c| d.min(d.max(c, d.lit(0.0)), d.lit(1.0)));
             put(Layer::Albedo, &[albedo.x, albedo.y, albedo.z]);
         }
         if layers.has(Layer::Normal) {
@@ -40,6 +43,15 @@ impl<D: Domain> Features<D> {
         if layers.has(Layer::Position) {
             let point = surface.point;
             put(Layer::Position, &[point.x, point.y, point.z]);
+        }
+        // Indices stay exact as numbers up to 2²⁴.
+        if layers.has(Layer::ObjectIndex) {
+            let index = d.to_real(surface.object + d.uint(1));
+            put(Layer::ObjectIndex, &[index]);
+        }
+        if layers.has(Layer::MaterialIndex) {
+            let ObjectRecord { material } = ObjectRecord::load(d, surface.object);
+            put(Layer::MaterialIndex, &[d.to_real(material + d.uint(1))]);
         }
         features
     }

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use residual_render::domain::Buffer;
-use residual_render::layer::Layers;
+use residual_render::layer::{Layer, Layers};
 use residual_render::program::{Program, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
@@ -116,7 +116,7 @@ pub struct Plan {
 
 impl Plan {
     /// Fills [`Buffer::Objects`], which is empty unless a renderer asks for the materials of objects.
-    pub fn pack_objects(&mut self) {
+    fn pack_objects(&mut self) {
         self.data.buffer_mut(Buffer::Objects).clear();
         for object in &self.objects {
             let material = object.material as u32;
@@ -212,7 +212,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     images.pack(scene, &mut data)?;
     *data.buffer_mut(Buffer::Params) = materials.params;
 
-    Ok(Plan {
+    let mut plan = Plan {
         name: scene.name.clone(),
         binding: options.binding,
         structure: Structure {
@@ -231,7 +231,11 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         diagonal: 2.0 * geometry.bounds.sphere().1,
         warnings,
         dismissed: [&scene.dismissed[..], &materials.dismissed].concat(),
-    })
+    };
+    if options.layers.has(Layer::MaterialIndex) {
+        plan.pack_objects();
+    }
+    Ok(plan)
 }
 
 /// What a triangle's material amounts to.
