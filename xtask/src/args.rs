@@ -33,7 +33,10 @@ pub(crate) enum Command {
     Cache(CacheCommand),
     /// Measure speed
     #[command(disable_help_flag = true)]
-    Bench(BenchArgs),
+    Bench(PassedOn),
+    /// Check the workspace as continuous integration does, but for the tests
+    #[command(disable_help_flag = true)]
+    Check(PassedOn),
 }
 
 /// Which scene, and how it is read.
@@ -173,9 +176,10 @@ pub(crate) enum CacheCommand {
     Clear,
 }
 
+/// Arguments of a command that is a program of its own.
 #[derive(Args)]
-pub(crate) struct BenchArgs {
-    /// What to measure; --help lists it
+pub(crate) struct PassedOn {
+    /// What is to be done; --help lists it
     #[arg(
         value_name = "ARGS",
         trailing_var_arg = true,

@@ -3,9 +3,9 @@
 //! A library, so that tests can build the command line for themselves. It reads arguments, calls the driver, and prints.
 
 mod args;
-mod bench;
 mod build;
 mod cache;
+mod delegate;
 mod emit;
 mod inspect;
 mod prices;
@@ -21,20 +21,21 @@ use crate::args::{Cli, Command};
 /// The command line: status 0, 1 for a failed job, 2 for bad usage.
 pub fn main() -> ExitCode {
     // Bad usage ends in clap, with status 2.
-    let result = match Cli::parse().command {
-        Command::Render(args) => render::run(&args),
-        Command::Inspect(args) => inspect::run(&args),
-        Command::Emit(args) => emit::run(&args),
-        Command::Build(args) => build::run(&args),
-        Command::Cache(command) => cache::run(command),
-        Command::Bench(args) => return or_fail(bench::run(&args)),
-    };
-    or_fail(result.map(|()| ExitCode::SUCCESS))
-}
-
-fn or_fail(result: anyhow::Result<ExitCode>) -> ExitCode {
-    result.unwrap_or_else(|error| {
+    run(Cli::parse().command).unwrap_or_else(|error| {
         eprintln!("error: {error:#}");
         ExitCode::FAILURE
     })
+}
+
+fn run(command: Command) -> anyhow::Result<ExitCode> {
+    match command {
+        Command::Render(args) => render::run(&args)?,
+        Command::Inspect(args) => inspect::run(&args)?,
+        Command::Emit(args) => emit::run(&args)?,
+        Command::Build(args) => build::run(&args)?,
+        Command::Cache(command) => cache::run(command)?,
+        Command::Bench(passed_on) => return delegate::to_package("residual-benches", &passed_on),
+        Command::Check(passed_on) => return delegate::to_package("residual-check", &passed_on),
+    }
+    Ok(ExitCode::SUCCESS)
 }

@@ -68,6 +68,6 @@ fn arguments_and_status_are_passed_on() {
 fn nothing_is_measured_if_cargo_fails() {
     let folder = tempfile::tempdir().unwrap();
     let output = bench(&folder, 101, &["traversal"]);
-    fails(&output, &["the benchmarks could not be built"]);
+    fails(&output, &["residual-benches could not be built"]);
     assert_eq!(String::from_utf8_lossy(&output.stdout).lines().count(), 1);
 }

@@ -1,27 +1,32 @@
-//! `cargo xtask bench`: cargo builds the benchmarks, which nothing else needs, and they get the arguments.
+//! Commands that are programs of their own: what only they need is not built for the others.
 
 use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, ensure};
 use residual_driver::{cargo, workspace};
 
-use crate::args::BenchArgs;
+use crate::args::PassedOn;
 
-pub(crate) fn run(args: &BenchArgs) -> Result<ExitCode> {
+/// Has cargo build the program of a package of the workspace, which has the package's name, runs it with the arguments, and
+/// gives its exit status.
+///
+/// # Errors
+/// If cargo cannot build the program, or the program cannot be started.
+pub(crate) fn to_package(package: &str, passed_on: &PassedOn) -> Result<ExitCode> {
     let target = workspace::target_directory();
     // Built in the workspace, for its settings, and run where we are, for the paths among the arguments: `cargo run` would
     // do both in one place.
     let built = cargo::command()
-        .args(["build", "--release", "--quiet"])
-        .args(["--package", "residual-benches", "--target-dir"])
+        .args(["build", "--release", "--quiet", "--package", package])
+        .arg("--target-dir")
         .arg(&target)
         .status()
         .context("running cargo")?;
-    ensure!(built.success(), "the benchmarks could not be built");
-    let program = format!("residual-benches{}", std::env::consts::EXE_SUFFIX);
+    ensure!(built.success(), "{package} could not be built");
+    let program = format!("{package}{}", std::env::consts::EXE_SUFFIX);
     let program = target.join("release").join(program);
     let status = Command::new(&program)
-        .args(&args.args)
+        .args(&passed_on.args)
         .status()
         .with_context(|| format!("running {}", program.display()))?;
     // A program that was killed has no status.

@@ -1,0 +1,58 @@
+//! Checks that other programs make. They write what is wrong themselves.
+
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context, Result};
+
+use crate::problem::Problem;
+use crate::workspace::cargo;
+
+pub(crate) fn format(root: &Path) -> Result<Vec<Problem>> {
+    let mut command = cargo(root);
+    command.args(["fmt", "--all", "--check"]);
+    run(command, "files are not formatted", "cargo fmt --all")
+}
+
+pub(crate) fn lints(root: &Path) -> Result<Vec<Problem>> {
+    let mut command = cargo(root);
+    command
+        .args(["clippy", "--release", "--workspace", "--all-targets"])
+        .args(["--quiet", "--", "-D", "warnings"]);
+    run(command, "there are warnings", "follow them")
+}
+
+pub(crate) fn documentation(root: &Path) -> Result<Vec<Problem>> {
+    let mut command = cargo(root);
+    command
+        .args(["doc", "--release", "--workspace", "--no-deps", "--quiet"])
+        .env("RUSTDOCFLAGS", "-D warnings");
+    run(
+        command,
+        "there are warnings in documentation",
+        "follow them",
+    )
+}
+
+pub(crate) fn freshness(root: &Path) -> Result<Vec<Problem>> {
+    let mut command = Command::new("python3");
+    command
+        .args(["scenes/generate.py", "--check"])
+        .current_dir(root);
+    run(
+        command,
+        "scenes are not those that their generator writes",
+        "python3 scenes/generate.py",
+    )
+}
+
+fn run(mut command: Command, what: &str, remedy: &str) -> Result<Vec<Problem>> {
+    let program = command.get_program().to_owned();
+    let status = command
+        .status()
+        .with_context(|| format!("starting {}", program.display()))?;
+    if status.success() {
+        return Ok(Vec::new());
+    }
+    Ok(vec![Problem::new(None, what, remedy)])
+}
