@@ -78,7 +78,7 @@ impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
     }
     #[inline(always)]
     fn covers(&self, ray: &Ray, hit: &Hit) -> bool {
-        match self.buffers.word(Buffer::TrianglePrograms, hit.prim) {
+        match render::triangle::program_in(self.buffers, hit.prim) {
             0 => {
                 let attributes = Attributes {
                     uv0: true,

@@ -2,6 +2,10 @@
 
 use glam::{Affine3A, Mat3, Vec3, Vec4};
 use residual_render::domain::Buffer;
+use residual_render::record::IndexedRecord;
+use residual_render::surface::{
+    ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
+};
 use residual_render::triangle::{ObjectRecord, TriangleRecord};
 use residual_scenegen::desc::{
     AlphaMode, Filter, InstanceDesc, MaterialDesc, MeshDesc, NormalMap, Phong, ScalarInput,
@@ -153,13 +157,6 @@ fn vertices(is: impl Fn(Reads) -> bool) -> usize {
     counted.map(|&mesh| VERTICES[mesh]).sum()
 }
 
-fn rows(plan: &Plan, buffer: Buffer) -> Vec<Vec4> {
-    let (rows, _) = plan.data.buffer(buffer).as_chunks();
-    rows.iter()
-        .map(|row: &[u32; 4]| Vec4::from_array(row.map(f32::from_bits)))
-        .collect()
-}
-
 fn planned(scene: &SceneDesc) -> Plan {
     plan(scene, &PlanOptions::default()).unwrap()
 }
@@ -169,21 +166,23 @@ fn planned(scene: &SceneDesc) -> Plan {
 #[test]
 fn buffers_end_with_the_last_vertex_that_is_read() {
     let plan = planned(&scene());
-    let length = |buffer| plan.data.buffer(buffer).len() / 4;
+    fn length<R: IndexedRecord>(plan: &Plan) -> usize {
+        plan.data.records::<R>().len()
+    }
     let tangents = vertices(|reads| reads.tangents);
     let colors = vertices(|reads| reads.tangents || reads.colors);
     let coordinates = vertices(|reads| reads.tangents || reads.colors || reads.uvs);
-    assert_eq!(length(Buffer::Tangents), tangents);
-    assert_eq!(length(Buffer::Colors), colors);
-    assert_eq!(length(Buffer::Uvs), coordinates);
+    assert_eq!(length::<TangentRecord>(&plan), tangents);
+    assert_eq!(length::<ColorRecord>(&plan), colors);
+    assert_eq!(length::<UvRecord>(&plan), coordinates);
     assert_eq!(
-        length(Buffer::Normals),
+        length::<NormalRecord>(&plan),
         coordinates + vertices(|r| r.normals && !r.uvs)
     );
     // By hand.
     assert_eq!([tangents, colors, coordinates], [650, 654, 979]);
-    assert_eq!(length(Buffer::Normals), 1629);
-    assert_eq!(length(Buffer::Indices), plan.data.triangle_count());
+    assert_eq!(length::<NormalRecord>(&plan), 1629);
+    assert_eq!(length::<VerticesRecord>(&plan), plan.data.triangle_count());
     assert_eq!(plan.data.triangle_count(), 5 * 576 + 3 * 2);
 }
 
@@ -191,15 +190,8 @@ fn buffers_end_with_the_last_vertex_that_is_read() {
 fn triangles_find_their_own_vertices() {
     let scene = scene();
     let plan = planned(&scene);
-    let indices = plan.data.buffer(Buffer::Indices);
     let positions = plan.data.positions();
-    let [normals, tangents, uvs, colors] = [
-        Buffer::Normals,
-        Buffer::Tangents,
-        Buffer::Uvs,
-        Buffer::Colors,
-    ]
-    .map(|buffer| rows(&plan, buffer));
+    let row = |[x, y, z]: [f32; 3], w: f32| Vec4::new(x, y, z, w);
     let same = |a: Vec4, b: Vec4, what: &str| {
         assert!((a - b).abs().max_element() < 1e-5, "{what}: {a} {b}")
     };
@@ -222,27 +214,36 @@ fn triangles_find_their_own_vertices() {
                     position.extend(0.0),
                     "position",
                 );
-                let vertex = indices[4 * triangle + k] as usize;
+                let VerticesRecord { a, b, c } = plan.data.record(triangle);
+                let vertex = [a, b, c][k] as usize;
                 if reads.normals {
                     let normal = linear * mesh.normals[corner];
-                    same(normals[vertex], normal.extend(0.0), "normal");
+                    let NormalRecord { normal: stored } = plan.data.record(vertex);
+                    same(row(stored.to_array(), 0.0), normal.extend(0.0), "normal");
                 }
                 if reads.tangents {
                     let tangent = mesh.tangents.as_ref().unwrap()[corner];
                     let turned = linear * tangent.truncate();
+                    let stored: TangentRecord = plan.data.record(vertex);
                     same(
-                        tangents[vertex],
+                        row(stored.tangent.to_array(), stored.sign),
                         turned.extend(tangent.w * mirror),
                         "tangent",
                     );
                 }
                 if reads.uvs {
                     let uv = mesh.uvs[0].as_ref().unwrap()[corner];
-                    same(uvs[vertex], Vec4::new(uv.x, uv.y, 0.0, 0.0), "coordinates");
+                    let UvRecord { u0, v0, u1, v1 } = plan.data.record(vertex);
+                    same(
+                        Vec4::new(u0, v0, u1, v1),
+                        Vec4::new(uv.x, uv.y, 0.0, 0.0),
+                        "coordinates",
+                    );
                 }
                 if reads.colors {
+                    let stored: ColorRecord = plan.data.record(vertex);
                     same(
-                        colors[vertex],
+                        row(stored.color.to_array(), stored.alpha),
                         mesh.colors.as_ref().unwrap()[corner],
                         "colour",
                     );

@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView};
-use residual_render::camera::AnyCamera;
-use residual_render::domain::Buffer;
+use residual_render::alias_table::AliasEntry;
+use residual_render::camera::{AnyCamera, CameraRecord};
 use residual_render::film::Film;
 use residual_render::layer::Layers;
-use residual_render::light::RECORD;
+use residual_render::light::{AreaRecord, push_light, set_picks};
 use residual_render::program::{
     BsdfNode, ColorNode, EmissionNode, InputNode, LightNode, Program, SourceNode, Structure,
 };
@@ -20,10 +20,6 @@ use residual_render::tracer::TracerNode;
 use residual_render::triangle::TriangleRecord;
 
 type Triangle = [[f32; 3]; 3];
-
-fn words(values: &[f32]) -> Vec<u32> {
-    values.iter().map(|value| value.to_bits()).collect()
-}
 
 /// A diffuse program, emitting if `emission` is not 0.
 fn diffuse(albedo: f32, emission: f32) -> Program {
@@ -50,29 +46,36 @@ fn scene(
     triangles: &[(Triangle, u32)],
     programs: Vec<Program>,
     emission: f32,
-    camera: [f32; 12],
+    camera: CameraRecord,
 ) -> (Structure, SceneData) {
     let mut data = SceneData::default();
     for &(triangle, program) in triangles {
         data.push_triangle(TriangleRecord::new(triangle), program);
     }
-    *data.buffer_mut(Buffer::Camera) = words(&camera);
+    data.push(camera);
     data.single_sided = vec![false; triangles.len()];
     let emits = |program: u32| programs[program as usize].emission.is_some();
     let lights: Vec<u32> = (0..triangles.len() as u32)
         .filter(|k| emits(triangles[*k as usize].1))
         .collect();
-    let mut alias = vec![lights.len() as u32, 0, 0, 0];
-    for (light, &prim) in (0..).zip(&lights) {
-        data.set_light(prim as usize, light);
-        let mut record = vec![0, prim, 1];
-        record.resize(RECORD as usize, 0);
-        data.buffer_mut(Buffer::Lights).extend(record);
-        // All lights of these scenes have the same area.
-        let probability = (1.0 / lights.len() as f32).to_bits();
-        alias.extend([1.0_f32.to_bits(), light, probability, probability]);
+    for (light, &triangle) in (0..).zip(&lights) {
+        data.set_light(triangle as usize, light);
+        let record = AreaRecord {
+            kind: 0,
+            triangle,
+            double_sided: 1,
+        };
+        push_light(&mut data, record);
     }
-    *data.buffer_mut(Buffer::LightAlias) = alias;
+    // All lights of these scenes have the same area.
+    let probability = 1.0 / lights.len() as f32;
+    let entry = |alias| AliasEntry {
+        threshold: 1.0,
+        alias,
+        density: probability,
+        alias_density: probability,
+    };
+    set_picks(&mut data, (0..lights.len() as u32).map(entry));
     let emission = ColorNode::Const([emission; 3]);
     let area = LightNode::Area {
         emission,
@@ -154,7 +157,19 @@ fn cube() -> Vec<Triangle> {
     triangles
 }
 
-const INSIDE: [f32; 12] = [0.1, 0.2, 0.3, 0.7, 0.0, 0.0, 0.0, 0.7, 0.0, 0.0, 0.0, -1.0];
+/// A pinhole whose film is a square of side 2·`half` around the place at `forward` from the eye, its right +X, its top +Y.
+fn camera(eye: [f32; 3], half: f32, forward: [f32; 3]) -> CameraRecord {
+    CameraRecord {
+        eye: eye.into(),
+        right: [half, 0.0, 0.0].into(),
+        up: [0.0, half, 0.0].into(),
+        forward: forward.into(),
+    }
+}
+
+fn inside() -> CameraRecord {
+    camera([0.1, 0.2, 0.3], 0.7, [0.0, 0.0, -1.0])
+}
 
 #[test]
 fn furnace_box_is_a_geometric_series() {
@@ -164,7 +179,7 @@ fn furnace_box_is_a_geometric_series() {
         &triangles,
         vec![diffuse(albedo, emission)],
         emission,
-        INSIDE,
+        inside(),
     );
     for depth in [1, 2, 3, 4, 8, 20] {
         let film = render(&structure, &data, LaneCount::native(), 256, depth);
@@ -192,7 +207,7 @@ fn furnace_box_is_a_geometric_series() {
 #[test]
 fn lane_counts_render_the_same_furnace() {
     let triangles: Vec<_> = cube().into_iter().map(|t| (t, 0)).collect();
-    let (structure, data) = scene(&triangles, vec![diffuse(0.7, 0.4)], 0.4, INSIDE);
+    let (structure, data) = scene(&triangles, vec![diffuse(0.7, 0.4)], 0.4, inside());
     let images = LaneCount::ALL.map(|lanes| render(&structure, &data, lanes, 8, 6).image());
     for image in &images[1..] {
         assert_eq!(image, &images[0]);
@@ -207,11 +222,7 @@ fn triangle_light_over_a_plane_is_lamberts_formula() {
     let at = [0.4_f32, 0.3, 0.0];
     let eye = [3.0_f32, 0.3, 1.0];
     let towards = [0, 1, 2].map(|k| at[k] - eye[k]);
-    let mut camera = [0.0; 12];
-    camera[..3].copy_from_slice(&eye);
-    camera[3] = 1e-4;
-    camera[7] = 1e-4;
-    camera[9..].copy_from_slice(&towards);
+    let camera = camera(eye, 1e-4, towards);
     let programs = vec![diffuse(0.5, 0.0), diffuse(0.0, 3.0)];
     let (structure, data) = scene(&[(floor, 0), (lamp, 1)], programs, 3.0, camera);
     let film = render(&structure, &data, LaneCount::native(), 512, 2);
@@ -240,19 +251,19 @@ fn triangle_light_over_a_plane_is_lamberts_formula() {
 #[test]
 fn nothing_is_black() {
     // No triangles; one triangle without light; a box without light.
-    let (structure, data) = scene(&[], vec![diffuse(0.5, 0.0)], 0.0, INSIDE);
+    let (structure, data) = scene(&[], vec![diffuse(0.5, 0.0)], 0.0, inside());
     assert_eq!(
         render(&structure, &data, LaneCount::native(), 4, 5).mean(),
         [0.0; 3]
     );
     let one: Triangle = [[-2.0, -2.0, -1.0], [2.0, -2.0, -1.0], [0.0, 3.0, -1.0]];
-    let (structure, data) = scene(&[(one, 0)], vec![diffuse(0.5, 0.0)], 0.0, INSIDE);
+    let (structure, data) = scene(&[(one, 0)], vec![diffuse(0.5, 0.0)], 0.0, inside());
     assert_eq!(
         render(&structure, &data, LaneCount::native(), 4, 5).mean(),
         [0.0; 3]
     );
     let triangles: Vec<_> = cube().into_iter().map(|t| (t, 0)).collect();
-    let (structure, data) = scene(&triangles, vec![diffuse(0.9, 0.0)], 0.0, INSIDE);
+    let (structure, data) = scene(&triangles, vec![diffuse(0.9, 0.0)], 0.0, inside());
     assert_eq!(
         render(&structure, &data, LaneCount::native(), 4, 9).mean(),
         [0.0; 3]
@@ -262,7 +273,7 @@ fn nothing_is_black() {
 #[test]
 fn one_emitting_triangle_is_seen_at_its_radiance() {
     let one: Triangle = [[-20.0, -20.0, -1.0], [20.0, -20.0, -1.0], [0.0, 30.0, -1.0]];
-    let (structure, data) = scene(&[(one, 0)], vec![diffuse(0.5, 2.5)], 2.5, INSIDE);
+    let (structure, data) = scene(&[(one, 0)], vec![diffuse(0.5, 2.5)], 2.5, inside());
     let film = render(&structure, &data, LaneCount::native(), 4, 5);
     assert!(film.image().iter().all(|pixel| *pixel == [2.5; 3]));
 }

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use residual_device_cpu::{Interpreter, LaneCount};
 use residual_render::domain::Buffer;
+use residual_render::light::EnvironmentHeader;
 use residual_render::program::{LightNode, Structure};
 use residual_render::scene_data::SceneData;
 use residual_scenegen::desc::{
@@ -40,8 +41,10 @@ fn add_black_environment(data: &mut SceneData) {
         assert!(data.buffer(buffer).is_empty());
         data.buffer_mut(buffer).extend(bright.buffer(buffer));
     }
-    // Its strength.
-    data.buffer_mut(Buffer::Environment)[3] = 0.0_f32.to_bits();
+    data.change(0, |header| EnvironmentHeader {
+        strength: 0.0,
+        ..header
+    });
 }
 
 /// The plain scene's structure, with the programs and the lights of all tiny scenes: none of its triangles uses them.

@@ -5,10 +5,11 @@ use std::fmt;
 use residual_render::program::{
     BsdfNode, ColorNode, ImageNode, InputNode, Program, ScalarNode, SourceNode,
 };
+use residual_render::record::BufferRecord;
 use residual_render::surface::Attributes;
-use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Image, Input, UvMap};
+use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, ColorParam, Image, Input, UvMap};
 
-use super::stream::{COLOR_IMAGES, NUMBER_IMAGE, image_slot};
+use super::stream::{COLOR_IMAGES, NUMBER_IMAGE, image_param};
 
 /// How a surface scatters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,7 +144,7 @@ impl Builder {
     }
 
     fn coat(&mut self, albedo: Input, roughness: Input) -> BsdfNode {
-        let reflectance = self.row([0.04_f32.to_bits(); 3]);
+        let reflectance = self.record(gray(0.04));
         BsdfNode::Glossy {
             albedo,
             roughness,
@@ -182,7 +183,7 @@ impl Builder {
             self.images += 1;
             ColorNode::Image(self.image(COLOR_IMAGES[self.images - 1], 0, AnyFormat::SrgbRgba8))
         } else {
-            ColorNode::Param(self.row([grey.to_bits(); 3]))
+            ColorNode::Param(self.record(gray(grey)))
         };
         self.input(name, SourceNode::Color(node))
     }
@@ -203,7 +204,7 @@ impl Builder {
 
     fn image(&mut self, image: u32, channel: u32, format: AnyFormat) -> ImageNode {
         Image {
-            slot: self.row(image_slot(image)),
+            slot: self.record(image_param(image)),
             uv: UvMap {
                 set: 0,
                 transform: None,
@@ -215,10 +216,16 @@ impl Builder {
         }
     }
 
-    /// Adds a row of parameters; returns its offset.
-    fn row(&mut self, [x, y, z]: [u32; 3]) -> u32 {
+    /// Adds a parameter; returns its offset.
+    fn record(&mut self, record: impl BufferRecord) -> u32 {
         let offset = self.params.len() as u32;
-        self.params.extend([x, y, z, 0]);
+        record.append_to(&mut self.params);
         offset
+    }
+}
+
+fn gray(value: f32) -> ColorParam {
+    ColorParam {
+        color: [value; 3].into(),
     }
 }

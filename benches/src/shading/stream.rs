@@ -7,9 +7,13 @@
 use residual_bvh::{Hit, Ray};
 use residual_device_cpu::Traversal;
 use residual_device_cpu::traversal::Alpha;
+use residual_render::alias_table::alias_entries;
+use residual_render::camera::CameraRecord;
 use residual_render::domain::Buffer;
-use residual_render::light::{ALIAS_HEADER, RECORD};
+use residual_render::light::{PunctualRecord, push_light, set_picks};
 use residual_render::scene_data::SceneData;
+use residual_render::surface::{UvRecord, VerticesRecord};
+use residual_render::texture::ImageParam;
 use residual_render::triangle::TriangleRecord;
 
 use crate::rays::random;
@@ -31,9 +35,13 @@ pub(super) const COLOR_IMAGES: [u32; 4] = [0, 1, 2, 3];
 pub(super) const NUMBER_IMAGE: u32 = 4;
 const IMAGES: u32 = 5;
 
-/// First texel, width and height of an image.
-pub(super) fn image_slot(image: u32) -> [u32; 3] {
-    [image * SIDE * SIDE, SIDE, SIDE]
+/// An image among the texels.
+pub(super) fn image_param(image: u32) -> ImageParam {
+    ImageParam {
+        first: image * SIDE * SIDE,
+        width: SIDE,
+        height: SIDE,
+    }
 }
 
 /// The patch once for each program, with the program's parameters; two lights, one on each side of it; images; a camera
@@ -66,18 +74,20 @@ pub(super) fn data(params_of_programs: &[Vec<u32>]) -> SceneData {
                 };
                 data.push_triangle(triangle, program as u32);
                 let [a, b, c] = corners.map(|(x, y)| vertex(x, y));
-                data.buffer_mut(Buffer::Indices).extend([a, b, c, 0]);
+                data.push(VerticesRecord { a, b, c });
             }
         }
     }
     for row in 0..=rows {
         for column in 0..=columns {
-            let uv = [
-                SPAN * column as f32 / columns as f32,
-                SPAN * row as f32 / rows as f32,
-            ];
-            let [u, v] = uv.map(f32::to_bits);
-            data.buffer_mut(Buffer::Uvs).extend([u, v, u, v]);
+            let u = SPAN * column as f32 / columns as f32;
+            let v = SPAN * row as f32 / rows as f32;
+            data.push(UvRecord {
+                u0: u,
+                v0: v,
+                u1: u,
+                v1: v,
+            });
         }
     }
     // Bright enough that paths live on.
@@ -88,30 +98,21 @@ pub(super) fn data(params_of_programs: &[Vec<u32>]) -> SceneData {
     });
     data.buffer_mut(Buffer::Texels).extend(texels);
     set_lights(&mut data, [[0.5, 0.7, 2.0], [0.5, 0.7, -2.0]]);
-    let camera: [[f32; 3]; 4] = [
-        [0.0, 0.0, 3.0],
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, -2.0],
-    ];
-    data.buffer_mut(Buffer::Camera)
-        .extend(camera.as_flattened().iter().map(|x| x.to_bits()));
+    data.push(CameraRecord {
+        eye: [0.0, 0.0, 3.0].into(),
+        right: [1.0, 0.0, 0.0].into(),
+        up: [0.0, 1.0, 0.0].into(),
+        forward: [0.0, 0.0, -2.0].into(),
+    });
     data
 }
 
 /// Two point lights of the structure's only kind, picked evenly.
 fn set_lights(data: &mut SceneData, positions: [[f32; 3]; 2]) {
-    let one = 1.0_f32.to_bits();
-    let half = 0.5_f32.to_bits();
-    for [x, y, z] in positions.map(|position| position.map(f32::to_bits)) {
-        let record = [0, x, y, z, one, one, one, 0, 0, 0, 0, 0];
-        assert_eq!(record.len(), RECORD as usize);
-        data.buffer_mut(Buffer::Lights).extend(record);
+    for position in positions {
+        push_light(data, PunctualRecord::new(0, position, [1.0; 3]));
     }
-    let alias = data.buffer_mut(Buffer::LightAlias);
-    alias.extend([2, 0, 0, 0]);
-    assert_eq!(alias.len(), ALIAS_HEADER as usize);
-    alias.extend([one, 0, half, half, one, 1, half, half]);
+    set_picks(data, alias_entries(&[0.5; 2], 1.0));
 }
 
 /// A traversal that needs no time: every ray hits the patch of one program, whatever its direction, and every shadow ray is

@@ -3,9 +3,10 @@
 use std::time::Instant;
 
 use residual_bvh::{Hit, Ray};
-use residual_render::domain::{Buffer, Lanes};
+use residual_render::domain::Lanes;
 use residual_render::scene::Scene;
 use residual_render::tracer::{Settings, Tracer};
+use residual_render::triangle::program_in;
 
 use crate::camera_rays::CameraRays;
 use crate::job::{Counters, SceneView, TileJob};
@@ -50,7 +51,7 @@ where
     } else {
         None
     };
-    let program_of = |prim: u32| view.buffers.word(Buffer::TrianglePrograms, prim);
+    let program_of = |prim: u32| program_in(&view.buffers, prim);
     let mut cameras = CameraRays::new(job);
     let mut paths = PathStream::with_capacity(STREAM);
     let mut next = PathStream::with_capacity(STREAM);

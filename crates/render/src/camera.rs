@@ -1,11 +1,8 @@
 //! Cameras.
-//!
-//! [`Buffer::Camera`], twelve `f32`: eye; the vectors from the film's centre to the middles of its right and top
-//! edges; and the vector from the eye to the film's centre (perspective) or the direction of view (orthographic).
 
-use crate::domain::{Buffer, Domain};
+use crate::domain::Domain;
 use crate::math::Vec3;
-use crate::math::vec3::vec3;
+use crate::record::record;
 use crate::scene_data::SceneData;
 use crate::surface::Ray;
 
@@ -15,6 +12,36 @@ pub trait Camera<D: Domain> {
     fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D>;
 }
 
+record! {
+    /// Where the camera is and what it sees, world space.
+    pub struct CameraRecord in Camera {
+        row {
+            /// The eye; for parallel rays, the film's centre.
+            eye: vector,
+        }
+        row {
+            /// From the film's centre to the middle of its right edge.
+            right: vector,
+        }
+        row {
+            /// From the film's centre to the middle of its top edge.
+            up: vector,
+        }
+        row {
+            /// From the eye to the film's centre; for parallel rays, the direction of view, of any length.
+            forward: vector,
+        }
+    }
+}
+
+impl<D: Domain> CameraRecord<D> {
+    /// From the film's centre to a point of the film.
+    #[inline(always)]
+    fn on_film(&self, [x, y]: [D::F; 2]) -> Vec3<D::F> {
+        self.right.scale(x) + self.up.scale(y)
+    }
+}
+
 /// A pinhole.
 #[derive(Clone, Copy, Debug)]
 pub struct Perspective;
@@ -22,44 +49,37 @@ pub struct Perspective;
 #[derive(Clone, Copy, Debug)]
 pub struct Orthographic;
 
-#[inline(always)]
-fn vector<D: Domain>(d: D, first: u32) -> Vec3<D::F> {
-    let [x, y, z] = [0, 1, 2].map(|k| d.uniform_real(Buffer::Camera, first + k));
-    vec3(x, y, z)
-}
-
-#[inline(always)]
-fn on_film<D: Domain>(d: D, film: [D::F; 2]) -> Vec3<D::F> {
-    vector(d, 3).scale(film[0]) + vector(d, 6).scale(film[1])
-}
-
 impl<D: Domain> Camera<D> for Perspective {
     #[inline(always)]
     fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
-        let dir = (vector(d, 9) + on_film(d, film)).normalize(d);
-        Ray::unbounded(d, vector(d, 0), dir)
+        let camera = CameraRecord::uniform(d);
+        let dir = (camera.forward + camera.on_film(film)).normalize(d);
+        Ray::unbounded(d, camera.eye, dir)
     }
 }
 
 impl<D: Domain> Camera<D> for Orthographic {
     #[inline(always)]
     fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
-        let org = vector(d, 0) + on_film(d, film);
-        Ray::unbounded(d, org, vector(d, 9).normalize(d))
+        let camera = CameraRecord::uniform(d);
+        let org = camera.eye + camera.on_film(film);
+        Ray::unbounded(d, org, camera.forward.normalize(d))
     }
 }
 
 /// Fits a scene's camera to images of this width over height. What is seen from bottom to top stays.
 pub fn set_aspect(data: &mut SceneData, aspect: f32) {
-    let words = data.buffer_mut(Buffer::Camera);
-    let length = |words: &[u32]| {
-        let squares = words.iter().map(|&word| f32::from_bits(word).powi(2));
-        squares.sum::<f32>().sqrt()
-    };
-    let scale = aspect * length(&words[6..9]) / length(&words[3..6]);
-    for word in &mut words[3..6] {
-        *word = (f32::from_bits(*word) * scale).to_bits();
-    }
+    data.change(0, |camera: CameraRecord| {
+        let length = |v: Vec3<f32>| {
+            let squares = v.to_array().map(|component| component.powi(2));
+            squares.iter().sum::<f32>().sqrt()
+        };
+        let scale = aspect * length(camera.up) / length(camera.right);
+        CameraRecord {
+            right: camera.right.scale(scale),
+            ..camera
+        }
+    });
 }
 
 /// A camera chosen at run time.

@@ -1,6 +1,7 @@
 //! The renderer, generic over an arithmetic domain: every formula once.
 #![forbid(unsafe_code)]
 
+pub mod alias_table;
 pub mod alpha;
 pub mod bsdf;
 pub mod camera;

@@ -78,7 +78,7 @@ pub trait BufferRecord: Copy {
     }
 }
 
-/// A record of which a buffer is an array.
+/// A record that has a buffer to itself: the buffer is an array of such records, or begins with one.
 pub trait IndexedRecord: BufferRecord {
     /// The buffer.
     const BUFFER: Buffer;
@@ -187,7 +187,7 @@ macro_rules! field {
 pub(crate) use field;
 
 /// Declares a record by its rows. A row has up to four words: a `word` is one, a `real` one, a `vector` of reals three; those
-/// left over at its end are 0. With `in Buffer`, that buffer is an array of such records.
+/// left over at its end are 0. With `in Buffer`, that buffer is an array of such records, or begins with one.
 macro_rules! record {
     (
         $(#[$meta:meta])*
@@ -223,7 +223,6 @@ macro_rules! record {
         impl $name<$crate::record::Offsets> {
             /// For each field, the word of the record at which it lies.
             #[inline(always)]
-            #[allow(dead_code, reason = "few records have fields that are read alone")]
             pub fn offsets() -> Self {
                 Self::from_rows($crate::record::Offsets, $crate::record::words_of_rows())
             }
@@ -232,14 +231,12 @@ macro_rules! record {
         impl<D: $crate::domain::Domain> $name<D> {
             /// The record that starts at word `first` of a buffer.
             #[inline(always)]
-            #[allow(dead_code, reason = "records are read in one of several ways")]
             pub fn load_at(d: D, buffer: $crate::domain::Buffer, first: D::U) -> Self {
                 Self::from_rows(d, d.load_rows(buffer, first))
             }
 
             /// The record that starts at word `first` of a buffer, the same for all lanes.
             #[inline(always)]
-            #[allow(dead_code, reason = "records are read in one of several ways")]
             pub fn uniform_at(d: D, buffer: $crate::domain::Buffer, first: u32) -> Self {
                 let words = $crate::record::words_of_rows();
                 Self::from_rows(d, words.map(|row| row.map(|word| d.uniform(buffer, first + word))))
@@ -254,10 +251,15 @@ macro_rules! record {
             impl<D: $crate::domain::Domain> $name<D> {
                 /// The record with this index.
                 #[inline(always)]
-                #[allow(dead_code, reason = "records are read in one of several ways")]
                 pub fn load(d: D, index: D::U) -> Self {
                     let first = index * d.uint($name::<$crate::record::Plain>::WORDS);
                     Self::load_at(d, $crate::domain::Buffer::$buffer, first)
+                }
+
+                /// The buffer's first record, the same for all lanes.
+                #[inline(always)]
+                pub fn uniform(d: D) -> Self {
+                    Self::uniform_at(d, $crate::domain::Buffer::$buffer, 0)
                 }
             }
         )?

@@ -1,6 +1,6 @@
 //! What is stored of a triangle.
 
-use crate::domain::{Buffer, Buffers};
+use crate::domain::{Buffer, Buffers, Domain, Scalar, Uint};
 use crate::math::Vec3;
 use crate::record::record;
 
@@ -65,6 +65,12 @@ record! {
 
 /// The index of a triangle's program.
 #[inline(always)]
-pub fn program_of(buffers: &Buffers<'_>, triangle: u32) -> u32 {
-    buffers.word(Buffer::TrianglePrograms, triangle)
+pub fn program_of<D: Domain>(d: D, triangle: D::U) -> D::U {
+    d.load(Buffer::TrianglePrograms, triangle)
+}
+
+/// [`program_of`] outside formulas.
+#[inline(always)]
+pub fn program_in(buffers: &Buffers<'_>, triangle: u32) -> u32 {
+    program_of(Scalar::new(buffers), Uint(triangle)).0
 }

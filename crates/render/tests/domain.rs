@@ -8,7 +8,8 @@ use residual_render::domain::{
     Buffer, Domain, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, One, Scalar,
 };
 use residual_render::light::{
-    self, Area, Directional, Environment, LightKind, LightSample, Point, Spot,
+    self, Area, AreaRecord, Directional, Environment, LightKind, LightSample, Point,
+    PunctualRecord, Spot,
 };
 use residual_render::math::elementary::{atan2, exp2, log2, pow, sincos_turns};
 use residual_render::math::vec3::vec3;
@@ -17,7 +18,8 @@ use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, Hit, Surface};
 use residual_render::texture::{
-    AnyFilter, AnyFormat, AnyWrap, ColorSource, Const, Image, ScalarSource, UvMap, srgb_table,
+    AnyFilter, AnyFormat, AnyWrap, ColorSource, Const, Image, ImageParam, ScalarSource, UvMap,
+    srgb_table,
 };
 
 use crate::support::random::Rng;
@@ -458,13 +460,20 @@ fn lights_agree() {
         emission: Const([3.0, 2.0, 1.0]),
         attributes: Attributes::default(),
     };
-    set_lights(&mut data, &[vec![0, 1, 1]], &[1.0]);
+    let lamp = AreaRecord {
+        kind: 0,
+        triangle: 1,
+        double_sided: 1,
+    };
+    set_lights(&mut data, &[lamp], &[1.0]);
     check("area", &data, &Light(area), &inputs);
-    let punctual = [0.3, 0.2, 0.933, 5.0, 4.0, 3.0, 0.0, 0.0, -1.0, 2.0, -0.5];
-    let record = std::iter::once(0)
-        .chain(punctual.map(f32::to_bits))
-        .collect();
-    set_lights(&mut data, &[record], &[1.0]);
+    let spot = PunctualRecord {
+        scale: 2.0,
+        axis: [0.0, 0.0, -1.0].into(),
+        offset: -0.5,
+        ..PunctualRecord::new(0, [0.3, 0.2, 0.933], [5.0, 4.0, 3.0])
+    };
+    set_lights(&mut data, &[spot], &[1.0]);
     check("point", &data, &Light(Point), &inputs);
     check("spot", &data, &Light(Spot), &inputs);
     check("directional", &data, &Light(Directional), &inputs);
@@ -494,7 +503,14 @@ fn textures_agree() {
     let mut data = scene(&[FLOOR]);
     let mut rng = Rng::new(48);
     *data.buffer_mut(Buffer::Texels) = (0..4 * 35).map(|_| rng.bits() & 0xbf7f_ffff).collect();
-    set_params(&mut data, &[0, 5, 7, 0].map(f32::from_bits));
+    set_params(
+        &mut data,
+        ImageParam {
+            first: 0,
+            width: 5,
+            height: 7,
+        },
+    );
     let moderate = reals(49, |r| {
         [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]
     });

@@ -1,11 +1,13 @@
 //! Lights against closed forms (hard cases L-04, L-05, L-08, L-09, L-11).
 
-use residual_render::domain::{Scalar, Uint};
+use residual_render::alias_table::AliasEntry;
+use residual_render::domain::{Buffer, Scalar, Uint};
 use residual_render::light::{
-    self, Area, Directional, Environment, LightKind, LightKinds, LightSample, Point, Spot,
-    power_heuristic,
+    self, Area, AreaRecord, Directional, Environment, EnvironmentHeader, LightKind, LightKinds,
+    LightSample, Point, PunctualRecord, Spot, power_heuristic,
 };
 use residual_render::math::vec3::vec3;
+use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, Ray};
 use residual_render::texture::Const;
@@ -28,6 +30,14 @@ const LAMP: Area<Const<[f32; 3]>> = Area {
         colors: false,
     },
 };
+
+fn lamp_record(triangle: u32, double_sided: u32) -> AreaRecord {
+    AreaRecord {
+        kind: 0,
+        triangle,
+        double_sided,
+    }
+}
 
 /// Contribution of a sample to the irradiance on a surface with this normal.
 fn irradiance<'a>(sample: &LightSample<Scalar<'a>>, normal: [f64; 3]) -> f64 {
@@ -101,7 +111,7 @@ fn triangles_shine_as_lambert_says() {
             [0, 1, 2].map(|k| (centre[k] + v[k] * size) as f32)
         });
         let mut data = scene(&[FLOOR, lamp]);
-        set_lights(&mut data, &[vec![0, 1, 1]], &[1.0]);
+        set_lights(&mut data, &[lamp_record(1, 1)], &[1.0]);
         let normal = [0.0, 0.0, 1.0];
         let exact = lambert(&lamp.map(|v| v.map(f64::from)), middle(&data), normal);
         let z = estimate(&data, &(LAMP, ()), normal, 4000, 121 + k).z(exact, 1e-6);
@@ -128,7 +138,7 @@ fn one_sided_and_degenerate_triangles() {
         (line, 1, false),
     ] {
         let mut data = scene(&[FLOOR, lamp]);
-        set_lights(&mut data, &[vec![0, 1, both]], &[1.0]);
+        set_lights(&mut data, &[lamp_record(1, both)], &[1.0]);
         let mean = estimate(&data, &(LAMP, ()), [0.0, 0.0, 1.0], 1000, 130);
         assert_eq!(
             mean.value() > 0.0,
@@ -140,11 +150,11 @@ fn one_sided_and_degenerate_triangles() {
     }
     // Seen edge on, up to the rounding of the point that it is seen from.
     let mut data = scene(&[FLOOR, edge_on]);
-    set_lights(&mut data, &[vec![0, 1, 1]], &[1.0]);
+    set_lights(&mut data, &[lamp_record(1, 1)], &[1.0]);
     assert!(estimate(&data, &(LAMP, ()), [0.0, 0.0, 1.0], 1000, 130).value() < 1e-7);
     // The point lies on the light itself.
     let mut data = scene(&[FLOOR]);
-    set_lights(&mut data, &[vec![0, 0, 1]], &[1.0]);
+    set_lights(&mut data, &[lamp_record(0, 1)], &[1.0]);
     assert_eq!(
         estimate(&data, &(LAMP, ()), [0.0, 0.0, 1.0], 1000, 131).value(),
         0.0
@@ -155,7 +165,7 @@ fn one_sided_and_degenerate_triangles() {
 fn density_of_a_light_is_the_same_from_both_sides() {
     let lamp: Triangle = [[0.3, -0.2, 2.0], [0.4, 1.1, 2.5], [1.7, 0.1, 1.5]];
     let mut data = scene(&[FLOOR, lamp]);
-    set_lights(&mut data, &[vec![0, 1, 1]], &[1.0]);
+    set_lights(&mut data, &[lamp_record(1, 1)], &[1.0]);
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
     let mut rng = Rng::new(132);
@@ -190,10 +200,9 @@ fn density_of_a_light_is_the_same_from_both_sides() {
     worst.assert_below(1e-6, "area light's density");
 }
 
-fn record(values: &[f32]) -> Vec<u32> {
-    std::iter::once(0)
-        .chain(values.iter().map(|v| v.to_bits()))
-        .collect()
+/// A red light of the only kind.
+fn punctual(position: [f32; 3], intensity: f32) -> PunctualRecord {
+    PunctualRecord::new(0, position, [intensity, 0.0, 0.0])
 }
 
 #[test]
@@ -215,44 +224,26 @@ fn punctual_lights_are_their_closed_forms() {
         let away = [0, 1, 2].map(|k| f64::from(place[k]) - point[k]);
         let (d2, wi) = (dot(away, away), unit(away));
         let exact = f64::from(intensity) / d2 * dot(wi, normal).max(0.0);
-        let [x, y, z] = place;
-        set_lights(
-            &mut data,
-            &[record(&[x, y, z, intensity, 0.0, 0.0])],
-            &[1.0],
-        );
-        close(estimate(&data, &(Point, ()), normal, 2, 134), exact, 1e-5);
+        set_lights(&mut data, &[punctual(place, intensity)], &[1.0]);
         // A spot of KHR_lights_punctual: inner and outer cone angles of 0.2 and 0.6.
         let axis = unit([0.1, 0.2, -1.0]);
         let (inner, outer) = (0.2_f64.cos(), 0.6_f64.cos());
         let scale = 1.0 / (inner - outer);
         let falloff = ((-dot(axis, wi) - outer) * scale).clamp(0.0, 1.0).powi(2);
-        let [a, b, c] = axis.map(|c| c as f32);
-        let spot = [
-            x,
-            y,
-            z,
-            intensity,
-            0.0,
-            0.0,
-            scale as f32,
-            a,
-            b,
-            c,
-            (-outer * scale) as f32,
-        ];
-        set_lights(&mut data, &[record(&spot)], &[1.0]);
+        let spot = PunctualRecord {
+            scale: scale as f32,
+            axis: axis.map(|c| c as f32).into(),
+            offset: (-outer * scale) as f32,
+            ..punctual(place, intensity)
+        };
+        set_lights(&mut data, &[spot], &[1.0]);
         close(
             estimate(&data, &(Spot, ()), normal, 2, 135),
             exact * falloff,
             1e-3,
         );
-        let [a, b, c] = wi.map(|c| c as f32);
-        set_lights(
-            &mut data,
-            &[record(&[a, b, c, intensity, 0.0, 0.0])],
-            &[1.0],
-        );
+        let sun = punctual(wi.map(|c| c as f32), intensity);
+        set_lights(&mut data, &[sun], &[1.0]);
         close(
             estimate(&data, &(Directional, ()), normal, 2, 136),
             f64::from(intensity) * dot(wi, normal).max(0.0),
@@ -260,8 +251,8 @@ fn punctual_lights_are_their_closed_forms() {
         );
     }
     // A light at the point itself is finite.
-    let [x, y, z] = point.map(|c| c as f32);
-    set_lights(&mut data, &[record(&[x, y, z, 1.0, 0.0, 0.0])], &[1.0]);
+    let there = punctual(point.map(|c| c as f32), 1.0);
+    set_lights(&mut data, &[there], &[1.0]);
     assert!(
         estimate(&data, &(Point, ()), normal, 2, 137)
             .value()
@@ -397,8 +388,12 @@ fn environment_samples_see_what_they_were_drawn_with() {
         "{elsewhere} of {n} samples in the neighbouring texel"
     );
     // Frequencies of texels are those of the table.
-    let words = data.buffer(residual_render::domain::Buffer::Environment);
-    let density = |k: usize| f64::from(f32::from_bits(words[8 + 4 * k + 2]));
+    let words = data.buffer(Buffer::Environment);
+    let table = &words[EnvironmentHeader::WORDS as usize..];
+    let density = |k: usize| {
+        let entry = AliasEntry::from_words(&table[k * AliasEntry::WORDS as usize..]);
+        f64::from(entry.density)
+    };
     let expected: Vec<_> = (0..width * height)
         .map(|k| density(k) / (width * height) as f64 * n as f64)
         .collect();
@@ -413,7 +408,7 @@ fn lights_are_picked_by_their_weights() {
     let mut data = scene(&[FLOOR]);
     let weights = [5.0, 0.0, 1.0, 2.5, 0.01, 40.0, 3.0];
     let records: Vec<_> = (0..7)
-        .map(|k| record(&[0.0, 0.0, 1.0, k as f32 + 1.0, 0.0, 0.0]))
+        .map(|k| punctual([0.0, 0.0, 1.0], k as f32 + 1.0))
         .collect();
     set_lights(&mut data, &records, &weights);
     let buffers = data.buffers();
@@ -440,9 +435,11 @@ fn lights_are_picked_by_their_weights() {
         "{counts:?} {expected:?}"
     );
     // Kinds: the number in the record decides.
-    let mut both = record(&[0.0, 0.0, 2.0, 7.0, 0.0, 0.0]);
-    both[0] = 1;
-    set_lights(&mut data, &[both], &[1.0]);
+    let second = PunctualRecord {
+        kind: 1,
+        ..punctual([0.0, 0.0, 2.0], 7.0)
+    };
+    set_lights(&mut data, &[second], &[1.0]);
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
     let sample = light::sample(d, &(Directional, (Point, ())), floor(d).point, [0.5; 4]);

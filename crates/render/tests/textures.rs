@@ -1,10 +1,11 @@
 //! Textures (hard cases T-02, T-03, T-04).
 
 use residual_render::domain::{Buffer, Scalar};
+use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::texture::{
-    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, ColorSource, Image, LinearFloat, Nearest,
-    Repeat, ScalarSource, SrgbRgba8, UvMap, srgb_table,
+    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, ColorSource, Image, ImageParam, LinearFloat,
+    Nearest, Repeat, ScalarSource, SrgbRgba8, TransformParam, UvMap, srgb_table,
 };
 
 use crate::support::random::Rng;
@@ -77,7 +78,14 @@ fn numbered(width: u32, height: u32) -> SceneData {
     words.extend((0..width * height).flat_map(texel).map(f32::to_bits));
     words.extend([(-1e9_f32).to_bits(); 64]);
     *data.buffer_mut(Buffer::Texels) = words;
-    set_params(&mut data, &[8, width, height, 0].map(f32::from_bits));
+    set_params(
+        &mut data,
+        ImageParam {
+            first: 8,
+            width,
+            height,
+        },
+    );
     data
 }
 
@@ -235,17 +243,16 @@ fn hostile_coordinates_stay_inside() {
 fn transforms_and_second_coordinates() {
     let mut data = numbered(4, 4);
     // u' = v, v' = −u + 1: a quarter turn.
-    let matrix = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0];
-    let params: Vec<f32> = [8, 4, 4, 0]
-        .map(f32::from_bits)
-        .into_iter()
-        .chain(matrix)
-        .collect();
-    set_params(&mut data, &params);
+    let quarter = TransformParam {
+        u: [0.0, 1.0, 0.0].into(),
+        v: [-1.0, 0.0, 1.0].into(),
+    };
+    quarter.append_to(data.buffer_mut(Buffer::Params));
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
     let mut surface = floor(d);
     surface.uv = [[0.1, 0.9], [0.6, 0.4]];
+    let turned = Some(ImageParam::WORDS);
     let at = |set: usize, transform: Option<u32>| {
         let clamped = (Clamp, Repeat);
         let image = Image {
@@ -260,8 +267,8 @@ fn transforms_and_second_coordinates() {
     };
     assert_eq!(at(0, None), 13.0, "column 0, row 3");
     assert_eq!(at(1, None), 7.0, "column 2, row 1");
-    assert_eq!(at(0, Some(4)), 16.0, "column 3, row 3");
-    assert_eq!(at(1, Some(4)), 6.0, "column 1, row 1");
+    assert_eq!(at(0, turned), 16.0, "column 3, row 3");
+    assert_eq!(at(1, turned), 6.0, "column 1, row 1");
 }
 
 #[test]

@@ -81,34 +81,38 @@ impl<T> Mask for T where T: Copy + BitAnd<Output = T> + BitOr<Output = T> + Not<
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(usize)]
 pub enum Buffer {
-    /// A [`TriangleRecord`](crate::triangle::TriangleRecord) each.
+    /// A [`TriangleRecord`](crate::triangle::TriangleRecord) for each triangle.
     Triangles,
-    /// A triangle's program: a word each; see [`program_of`](crate::triangle::program_of).
+    /// The index of its program for each triangle, a word; [`program_of`](crate::triangle::program_of) reads it.
     TrianglePrograms,
-    /// The numbers of three vertices and 0, a triangle. Only where attributes are read.
+    /// A [`VerticesRecord`](crate::surface::VerticesRecord) for each triangle. Only where attributes are read.
     Indices,
-    /// x, y, z, 0 a vertex.
+    /// A [`NormalRecord`](crate::surface::NormalRecord) for each vertex.
     Normals,
-    /// x, y, z, sign a vertex.
+    /// A [`TangentRecord`](crate::surface::TangentRecord) for each vertex.
     Tangents,
-    /// Two sets of texture coordinates, u, v, u, v a vertex.
+    /// A [`UvRecord`](crate::surface::UvRecord) for each vertex.
     Uvs,
-    /// r, g, b, a a vertex.
+    /// A [`ColorRecord`](crate::surface::ColorRecord) for each vertex.
     Colors,
-    /// Parameter blocks of the materials: a number a word, and a colour, an image's slot, each half of a texture
-    /// transform a row of three words and 0.
+    /// Parameter blocks of the materials: numbers, a word each, and the records
+    /// [`ColorParam`](crate::texture::ColorParam), [`ImageParam`](crate::texture::ImageParam) and
+    /// [`TransformParam`](crate::texture::TransformParam), at the offsets that the materials' programs name.
     Params,
-    /// Texels of all images.
+    /// Texels of all images, each as its [`TexelFormat`](crate::texture::TexelFormat) stores it.
     Texels,
-    /// Light records; see `light`.
+    /// The record of its kind for each light: [`AreaRecord`](crate::light::AreaRecord),
+    /// [`PunctualRecord`](crate::light::PunctualRecord), or [`LightRecord`](crate::light::LightRecord) for the
+    /// environment. They lie [`LIGHT_WORDS`](crate::light::LIGHT_WORDS) apart.
     Lights,
-    /// How many lights there are, then the alias table over them; see `light`.
+    /// A [`PickHeader`](crate::light::PickHeader), and an [`AliasEntry`](crate::alias_table::AliasEntry) for each light.
     LightAlias,
-    /// The environment's header and alias table; see `light::environment`.
+    /// An [`EnvironmentHeader`](crate::light::EnvironmentHeader), and an
+    /// [`AliasEntry`](crate::alias_table::AliasEntry) for each texel.
     Environment,
-    /// The camera.
+    /// A [`CameraRecord`](crate::camera::CameraRecord).
     Camera,
-    /// An [`ObjectRecord`](crate::triangle::ObjectRecord) each. Only where a renderer asks for the materials of objects.
+    /// An [`ObjectRecord`](crate::triangle::ObjectRecord) for each object. Only where a renderer asks for the materials of objects.
     Objects,
 }
 

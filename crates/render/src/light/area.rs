@@ -1,12 +1,27 @@
 //! Emitting triangles.
 //!
-//! Record: kind, triangle, 1 if both sides emit. Points are sampled uniformly by area.
+//! Points are sampled uniformly by area.
 
 use super::{LightKind, LightSample};
 use crate::domain::{Buffer, Domain};
 use crate::math::{Vec3, warp};
+use crate::record::record;
 use crate::surface::{Attributes, Ray, Surface, offset_point};
 use crate::texture::ColorSource;
+
+record! {
+    /// An emitting triangle.
+    pub struct AreaRecord {
+        row {
+            /// The position of its kind in the scene's list of kinds.
+            kind: word,
+            /// Index of the triangle.
+            triangle: word,
+            /// 1 if both sides emit, 0 if only the front does.
+            double_sided: word,
+        }
+    }
+}
 
 /// Triangles whose emission comes from sources of one kind.
 #[derive(Clone, Copy, Debug)]
@@ -20,12 +35,12 @@ pub struct Area<E> {
 impl<D: Domain, E: ColorSource<D>> LightKind<D> for Area<E> {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D> {
-        let [[_, prim, both_sides, _]] = d.load_rows(Buffer::Lights, record);
+        let record = AreaRecord::load_at(d, Buffer::Lights, record);
         let (b1, b2) = warp::triangle(d, [u[0], u[1]]);
-        let there = Surface::seen_from(d, self.attributes, prim, [b1, b2], from);
+        let there = Surface::seen_from(d, self.attributes, record.triangle, [b1, b2], from);
         let towards = there.point - from;
         let distance = d.max(towards.length(d), d.lit(1e-18));
-        let emits = there.front | d.eq_u(both_sides, d.uint(1));
+        let emits = there.front | d.eq_u(record.double_sided, d.uint(1));
         let faces = d.lt(d.lit(0.0), there.cos_geometric);
         let solid_angle = there.cos_geometric * there.area;
         let safe = d.select(faces, solid_angle, d.lit(1.0));

@@ -3,21 +3,46 @@
 //!
 //! Texels are picked from an alias table by the integral of the bilinear image over each, so that every direction
 //! that shines can be sampled; the position within the texel is uniform.
-//!
-//! [`Buffer::Environment`]: [`HEADER`] words — width, height, first word of the image among the texels, strength
-//! (`f32`), cosine and sine of the rotation, the light's number, 0 — then for each texel a row: threshold (`f32`), alias,
-//! and the densities (`f32`) over the unit square of image coordinates in the texel and in its alias.
 
-use super::{ALIAS_ENTRY, Background, LightKind, LightSample, pick_probability, resolve_alias};
+use super::{Background, LightKind, LightSample, pick_probability};
+use crate::alias_table::{AliasEntry, AliasTable};
 use crate::domain::{Buffer, Domain};
 use crate::math::elementary::{atan2, sincos_turns};
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
-
+use crate::record::{BufferRecord, record};
+use crate::scene_data::SceneData;
 use crate::texture::{Bilinear, Clamp, Filtering, LinearFloat, Repeat, TexelFormat, Wrapping};
 
-/// Words before the alias table.
-pub const HEADER: u32 = 8;
+record! {
+    /// What lies before the table over the texels in [`Buffer::Environment`].
+    pub struct EnvironmentHeader in Environment {
+        row {
+            /// Width of the image in texels.
+            width: word,
+            /// Its height.
+            height: word,
+            /// Its first word in [`Buffer::Texels`].
+            first_texel: word,
+            /// What texels are multiplied with to give radiance.
+            strength: real,
+        }
+        row {
+            /// Cosine of the rotation about +Y.
+            cos: real,
+            /// Its sine.
+            sin: real,
+            /// Index of the light.
+            light: word,
+        }
+    }
+}
+
+/// The table over the texels. Its densities are over the unit square of image coordinates.
+const TEXELS: AliasTable = AliasTable {
+    buffer: Buffer::Environment,
+    first: EnvironmentHeader::WORDS,
+};
 
 /// The environment. A scene has at most one.
 #[derive(Clone, Copy, Debug)]
@@ -25,54 +50,50 @@ pub struct Environment;
 
 const PI: f64 = std::f64::consts::PI;
 
-/// Coordinates in the image of a unit direction, and the sine of the angle to +Y.
-#[inline(always)]
-fn to_image<D: Domain>(d: D, dir: Vec3<D::F>) -> ([D::F; 2], D::F) {
-    let cos = d.uniform_real(Buffer::Environment, 4);
-    let sin = d.uniform_real(Buffer::Environment, 5);
-    let (x, z) = (dir.x * cos - dir.z * sin, d.fma(dir.x, sin, dir.z * cos));
-    let sin_theta = d.sqrt(d.fma(x, x, z * z));
-    let u = d.fma(atan2(d, z, x), d.lit(0.5 / PI), d.lit(0.5));
-    let v = atan2(d, sin_theta, dir.y) * d.lit(1.0 / PI);
-    ([u, v], sin_theta)
-}
+impl<D: Domain> EnvironmentHeader<D> {
+    /// Coordinates in the image of a unit direction, and the sine of the angle to +Y.
+    #[inline(always)]
+    fn to_image(&self, d: D, dir: Vec3<D::F>) -> ([D::F; 2], D::F) {
+        let (cos, sin) = (self.cos, self.sin);
+        let (x, z) = (dir.x * cos - dir.z * sin, d.fma(dir.x, sin, dir.z * cos));
+        let sin_theta = d.sqrt(d.fma(x, x, z * z));
+        let u = d.fma(atan2(d, z, x), d.lit(0.5 / PI), d.lit(0.5));
+        let v = atan2(d, sin_theta, dir.y) * d.lit(1.0 / PI);
+        ([u, v], sin_theta)
+    }
 
-/// The unit direction of image coordinates, and the sine of its angle to +Y.
-#[inline(always)]
-fn to_direction<D: Domain>(d: D, [u, v]: [D::F; 2]) -> (Vec3<D::F>, D::F) {
-    let cos = d.uniform_real(Buffer::Environment, 4);
-    let sin = d.uniform_real(Buffer::Environment, 5);
-    let (sin_phi, cos_phi) = sincos_turns(d, u - d.lit(0.5));
-    let (sin_theta, cos_theta) = sincos_turns(d, v * d.lit(0.5));
-    let (x, z) = (sin_theta * cos_phi, sin_theta * sin_phi);
-    (
-        vec3(d.fma(x, cos, z * sin), cos_theta, z * cos - x * sin),
-        sin_theta,
-    )
-}
+    /// The unit direction of image coordinates, and the sine of its angle to +Y.
+    #[inline(always)]
+    fn to_direction(&self, d: D, [u, v]: [D::F; 2]) -> (Vec3<D::F>, D::F) {
+        let (cos, sin) = (self.cos, self.sin);
+        let (sin_phi, cos_phi) = sincos_turns(d, u - d.lit(0.5));
+        let (sin_theta, cos_theta) = sincos_turns(d, v * d.lit(0.5));
+        let (x, z) = (sin_theta * cos_phi, sin_theta * sin_phi);
+        (
+            vec3(d.fma(x, cos, z * sin), cos_theta, z * cos - x * sin),
+            sin_theta,
+        )
+    }
 
-#[inline(always)]
-fn size<D: Domain>(d: D) -> (D::U, D::F, D::F) {
-    let width = d.uniform(Buffer::Environment, 0);
-    (
-        width,
-        d.to_real(width),
-        d.to_real(d.uniform(Buffer::Environment, 1)),
-    )
-}
+    /// Columns and rows of the image.
+    #[inline(always)]
+    fn size(&self, d: D) -> [D::F; 2] {
+        [d.to_real(self.width), d.to_real(self.height)]
+    }
 
-#[inline(always)]
-fn radiance<D: Domain>(d: D, [u, v]: [D::F; 2]) -> Color<D::F> {
-    let (width, columns, rows) = size(d);
-    let first = d.uniform(Buffer::Environment, 2);
-    let texel = |x: D::F, y: D::F| {
-        let x = d.to_uint(Repeat.wrap(d, x, columns));
-        let y = d.to_uint(Clamp.wrap(d, y, rows));
-        LinearFloat.color(d, first + (y * width + x) * d.uint(LinearFloat.words()))
-    };
-    Bilinear
-        .filter(d, u * columns, v * rows, texel, |a, b, t| a.lerp(b, t))
-        .scale(d.uniform_real(Buffer::Environment, 3))
+    #[inline(always)]
+    fn radiance(&self, d: D, [u, v]: [D::F; 2]) -> Color<D::F> {
+        let [columns, rows] = self.size(d);
+        let texel = |x: D::F, y: D::F| {
+            let x = d.to_uint(Repeat.wrap(d, x, columns));
+            let y = d.to_uint(Clamp.wrap(d, y, rows));
+            let texel = y * self.width + x;
+            LinearFloat.color(d, self.first_texel + texel * d.uint(LinearFloat.words()))
+        };
+        Bilinear
+            .filter(d, u * columns, v * rows, texel, |a, b, t| a.lerp(b, t))
+            .scale(self.strength)
+    }
 }
 
 /// A texel's row and column. Above 2²³ texels the rounded quotient may be a row off, and is put right.
@@ -95,26 +116,27 @@ fn solid_angle_pdf<D: Domain>(d: D, over_image: D::F, sin_theta: D::F) -> D::F {
 impl<D: Domain> LightKind<D> for Environment {
     #[inline(always)]
     fn sample(&self, d: D, _: D::U, _: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D> {
-        let (width, columns, rows) = size(d);
+        let header = EnvironmentHeader::uniform(d);
+        let [columns, rows] = header.size(d);
         let one = d.lit(1.0);
         let (x, y) = (u[0] * columns, u[1] * rows);
         let (column, row) = (
             d.min(d.floor(x), columns - one),
             d.min(d.floor(y), rows - one),
         );
-        let slot = d.to_uint(row) * width + d.to_uint(column);
-        let (texel, density) = resolve_alias(d, Buffer::Environment, HEADER, slot, u[2]);
-        let (row, column) = row_and_column(d, texel, width);
+        let slot = d.to_uint(row) * header.width + d.to_uint(column);
+        let (texel, density) = TEXELS.resolve(d, slot, u[2]);
+        let (row, column) = row_and_column(d, texel, header.width);
         let place = [
             (column + (x - d.floor(x))) / columns,
             (row + (y - d.floor(y))) / rows,
         ];
-        let (wi, sin_theta) = to_direction(d, place);
+        let (wi, sin_theta) = header.to_direction(d, place);
         LightSample {
             wi,
             position: wi,
             infinite: d.truth(true),
-            radiance: radiance(d, place),
+            radiance: header.radiance(d, place),
             pdf: solid_angle_pdf(d, density, sin_theta),
             delta: d.truth(false),
         }
@@ -122,18 +144,32 @@ impl<D: Domain> LightKind<D> for Environment {
 
     #[inline(always)]
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
-        let (place, sin_theta) = to_image(d, dir);
-        let (width, columns, rows) = size(d);
+        let header = EnvironmentHeader::uniform(d);
+        let (place, sin_theta) = header.to_image(d, dir);
+        let [columns, rows] = header.size(d);
         let column = d.to_uint(Clamp.wrap(d, d.floor(place[0] * columns), columns));
         let row = d.to_uint(Clamp.wrap(d, d.floor(place[1] * rows), rows));
-        let pick = pick_probability(d, d.uniform(Buffer::Environment, 6));
-        let entry = (row * width + column) * d.uint(ALIAS_ENTRY) + d.uint(HEADER);
-        let density = d.load_real(Buffer::Environment, entry + d.uint(2));
+        let pick = pick_probability(d, header.light);
+        let density = TEXELS.density(d, row * header.width + column);
         Some(Background {
-            radiance: radiance(d, place),
+            radiance: header.radiance(d, place),
             pdf: solid_angle_pdf(d, density, sin_theta) * pick,
         })
     }
+}
+
+/// Sets the environment, and the table from which its texels are picked: an entry each.
+pub fn set_environment(
+    data: &mut SceneData,
+    header: EnvironmentHeader,
+    entries: impl ExactSizeIterator<Item = AliasEntry>,
+) {
+    let buffer = data.buffer_mut(Buffer::Environment);
+    buffer.clear();
+    let entry = AliasEntry::WORDS as usize;
+    buffer.reserve_exact(EnvironmentHeader::WORDS as usize + entry * entries.len());
+    header.append_to(buffer);
+    entries.for_each(|entry| entry.append_to(buffer));
 }
 
 #[cfg(test)]

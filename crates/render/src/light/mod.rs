@@ -2,31 +2,23 @@
 //!
 //! A scene's kinds of lights are a type list, `(A, (B, ()))`, so that a renderer contains the kinds that its
 //! scene has and no others. One light is picked from an alias table by its power, then sampled by its kind.
-//!
-//! [`Buffer::LightAlias`]: a row whose word 0 is the number of lights n, then the alias table: for each light a row of
-//! threshold (`f32`), alias, and the probabilities (`f32`) with which the light and its alias are picked.
-//! [`Buffer::Lights`]: [`RECORD`] words a light; word 0 is the kind's position in the list, the rest is the kind's
-//! affair.
 
 mod area;
-pub mod environment;
+mod environment;
+mod pick;
 mod punctual;
 
-pub use area::Area;
-pub use environment::Environment;
-pub use punctual::{Directional, Point, Spot};
+pub use area::{Area, AreaRecord};
+pub use environment::{Environment, EnvironmentHeader, set_environment};
+pub use pick::{
+    LIGHT_WORDS, LightRecord, Pick, PickHeader, pick, pick_probability, push_light, set_picks,
+};
+pub use punctual::{Directional, Point, PunctualRecord, Spot};
 
-use crate::domain::{Buffer, Bundle, Domain};
+use crate::domain::{Bundle, Domain};
 use crate::math::{Color, Vec3};
 use crate::surface::{Ray, Surface};
-pub use crate::triangle::NO_LIGHT;
-
-/// Words of a light's record.
-pub const RECORD: u32 = 12;
-/// Words of an entry of an alias table.
-pub const ALIAS_ENTRY: u32 = 4;
-/// Words before the entries of the lights' alias table.
-pub const ALIAS_HEADER: u32 = 4;
+use crate::triangle::NO_LIGHT;
 
 /// Light arriving at a point from one sampled direction.
 #[derive(Clone, Copy, Debug)]
@@ -273,38 +265,6 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
     }
 }
 
-/// A picked light.
-#[derive(Clone, Copy, Debug)]
-pub struct Pick<D: Domain> {
-    /// The number of its kind.
-    pub kind: D::U,
-    /// First word of its record.
-    pub record: D::U,
-    /// The probability of the pick.
-    pub probability: D::F,
-}
-
-/// Picks a light.
-#[inline(always)]
-pub fn pick<D: Domain>(d: D, u: D::F) -> Pick<D> {
-    let count = d.to_real(d.uniform(Buffer::LightAlias, 0));
-    let place = u * count;
-    let slot = d.min(d.floor(place), count - d.lit(1.0));
-    let (light, probability) = resolve_alias(
-        d,
-        Buffer::LightAlias,
-        ALIAS_HEADER,
-        d.to_uint(slot),
-        place - slot,
-    );
-    let record = light * d.uint(RECORD);
-    Pick {
-        kind: d.load(Buffer::Lights, record),
-        record,
-        probability,
-    }
-}
-
 /// Picks a light with `u[0]` and samples it with the other three numbers. The density includes the pick.
 ///
 /// It is never inlined: all programs of a scene share one copy, which halves what there is to compile and to keep in the
@@ -346,11 +306,8 @@ pub fn density<D: Domain, L: LightKinds<D> + ?Sized>(
 ) -> D::F {
     let no_light = d.eq_u(seen.light, d.uint(NO_LIGHT));
     let light = d.select_u(no_light, d.uint(0), seen.light);
-    let record = light * d.uint(RECORD);
-    let kind = KindNumber {
-        kind: d.load(Buffer::Lights, record),
-        first: 0,
-    };
+    let (kind, record) = pick::find(d, light);
+    let kind = KindNumber { kind, first: 0 };
     match lights.density(d, kind, record, ray, seen) {
         Some(density) => {
             let density = density * pick_probability(d, light);
@@ -358,24 +315,6 @@ pub fn density<D: Domain, L: LightKinds<D> + ?Sized>(
         }
         None => d.lit(0.0),
     }
-}
-
-/// The probability of picking a light.
-#[inline(always)]
-pub fn pick_probability<D: Domain>(d: D, light: D::U) -> D::F {
-    let entry = light * d.uint(ALIAS_ENTRY) + d.uint(ALIAS_HEADER);
-    d.load_real(Buffer::LightAlias, entry + d.uint(2))
-}
-
-/// An alias table's answer for a slot and a number in [0, 1): the slot itself, or its alias; and the density that the
-/// table says of it.
-#[inline(always)]
-fn resolve_alias<D: Domain>(d: D, buffer: Buffer, first: u32, slot: D::U, u: D::F) -> (D::U, D::F) {
-    let entry = slot * d.uint(ALIAS_ENTRY) + d.uint(first);
-    let [[threshold, alias, of_slot, of_alias]] = d.load_rows(buffer, entry);
-    let stays = d.lt(u, d.from_bits(threshold));
-    let density = d.select_u(stays, of_slot, of_alias);
-    (d.select_u(stays, slot, alias), d.from_bits(density))
 }
 
 /// Multiple importance sampling's power heuristic, in the form that neither overflows nor divides 0 by 0

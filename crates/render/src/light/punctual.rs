@@ -1,11 +1,11 @@
 //! Point, spot and directional lights (KHR_lights_punctual).
 //!
-//! Records: kind, position (or, directional, the unit direction towards the light); intensity, scale; the unit axis,
-//! offset. Axis, scale and offset are of spots alone: `clamp(cos·scale + offset)²` as the extension recommends.
+//! A spot's intensity falls off with `clamp(cos·scale + offset)²`, as the extension recommends.
 
 use super::{LightKind, LightSample};
 use crate::domain::{Buffer, Domain};
 use crate::math::Vec3;
+use crate::record::record;
 
 /// Shines everywhere from a point.
 #[derive(Clone, Copy, Debug)]
@@ -17,26 +17,50 @@ pub struct Spot;
 #[derive(Clone, Copy, Debug)]
 pub struct Directional;
 
-/// A record: position, intensity and scale, axis and offset.
-struct Record<D: Domain> {
-    position: Vec3<D::F>,
-    intensity: Vec3<D::F>,
-    scale: D::F,
-    axis: Vec3<D::F>,
-    offset: D::F,
+record! {
+    /// A light without extent.
+    pub struct PunctualRecord {
+        row {
+            /// The position of its kind in the scene's list of kinds.
+            kind: word,
+            /// World space. Of a directional light, the unit direction towards it.
+            position: vector,
+        }
+        row {
+            /// Radiant intensity; of a directional light, irradiance at normal incidence.
+            intensity: vector,
+            /// Of a spot: what the cosine of the angle to the axis is multiplied with.
+            scale: real,
+        }
+        row {
+            /// Of a spot: the unit direction in which it shines.
+            axis: vector,
+            /// Of a spot: what is added to the scaled cosine.
+            offset: real,
+        }
+    }
 }
 
-impl<D: Domain> Record<D> {
-    #[inline(always)]
-    fn load(d: D, first: D::U) -> Self {
-        let [[_, x, y, z], intensity, axis] = d.load_rows(Buffer::Lights, first);
+const _: () = assert!(PunctualRecord::WORDS == 12);
+
+impl PunctualRecord {
+    /// A light that is no spot.
+    pub fn new(kind: u32, position: [f32; 3], intensity: [f32; 3]) -> Self {
         Self {
-            position: Vec3::from_row(d, [x, y, z, first]),
-            intensity: Vec3::from_row(d, intensity),
-            scale: d.from_bits(intensity[3]),
-            axis: Vec3::from_row(d, axis),
-            offset: d.from_bits(axis[3]),
+            kind,
+            position: position.into(),
+            intensity: intensity.into(),
+            scale: 0.0,
+            axis: [0.0; 3].into(),
+            offset: 0.0,
         }
+    }
+}
+
+impl<D: Domain> PunctualRecord<D> {
+    #[inline(always)]
+    fn of_light(d: D, record: D::U) -> Self {
+        Self::load_at(d, Buffer::Lights, record)
     }
 
     /// The light of the record, shining everywhere from its position.
@@ -60,14 +84,14 @@ impl<D: Domain> Record<D> {
 impl<D: Domain> LightKind<D> for Point {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
-        Record::load(d, record).arriving_at(d, from)
+        PunctualRecord::of_light(d, record).arriving_at(d, from)
     }
 }
 
 impl<D: Domain> LightKind<D> for Spot {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
-        let record = Record::load(d, record);
+        let record = PunctualRecord::of_light(d, record);
         let everywhere = record.arriving_at(d, from);
         let cos = -record.axis.dot(d, everywhere.wi);
         let falloff = d.fma(cos, record.scale, record.offset);
@@ -82,7 +106,7 @@ impl<D: Domain> LightKind<D> for Spot {
 impl<D: Domain> LightKind<D> for Directional {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, _: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
-        let record = Record::load(d, record);
+        let record = PunctualRecord::of_light(d, record);
         LightSample {
             wi: record.position,
             position: record.position,

@@ -6,12 +6,13 @@ use super::boxed::{self, BoxedAlpha, BoxedMaterial};
 use super::{LightNode, Structure};
 use crate::alpha::is_there;
 use crate::camera::AnyCamera;
-use crate::domain::{Buffer, Buffers, Domain, Scalar};
+use crate::domain::{Buffers, Domain, Scalar};
 use crate::layer::Layers;
 use crate::light::{Area, Directional, Environment, LightKind, Point, Spot};
 use crate::sampler::AnySampler;
 use crate::scene::{MaterialVisitor, Scene};
 use crate::tracer::{AnyTracer, Layered, Settings, TracerNode};
+use crate::triangle::program_in;
 
 /// A scene as boxed nodes over a domain.
 pub struct Interpreted<'a, D: Domain> {
@@ -84,7 +85,7 @@ impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
         self.alphas.iter().any(Option::is_some)
     }
     fn covers(&self, ray: &Ray, hit: &Hit) -> bool {
-        let program = self.buffers.word(Buffer::TrianglePrograms, hit.prim) as usize;
+        let program = program_in(self.buffers, hit.prim) as usize;
         self.alphas[program].as_ref().is_none_or(|alpha| {
             is_there(
                 self.buffers,

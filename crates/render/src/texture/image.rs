@@ -5,6 +5,7 @@
 //! which the `Any…` enumerations stand in where a renderer is interpreted.
 //! Texel centres lie at half-integers; row 0 is at v = 0.
 
+use super::params::{ImageParam, TransformParam};
 use super::srgb;
 use super::{ColorSource, ScalarSource};
 use crate::domain::{Buffer, Domain};
@@ -281,8 +282,7 @@ impl Filtering for AnyFilter {
 pub struct UvMap {
     /// 0 or 1.
     pub set: usize,
-    /// Offset, in the parameter block, of the matrix of KHR_texture_transform: two rows of three numbers and 0.
-    /// `None` is the identity.
+    /// Offset of a [`TransformParam`] in the parameter block. `None` is the identity.
     pub transform: Option<u32>,
 }
 
@@ -294,12 +294,9 @@ impl UvMap {
             None => [u, v],
             Some(offset) => {
                 let first = surface.params + d.uint(offset);
-                let [x, y] = d.load_rows(Buffer::Params, first);
-                let apply = |row: [D::U; 4]| {
-                    let m = Vec3::from_row(d, row);
-                    d.fma(m.x, u, d.fma(m.y, v, m.z))
-                };
-                [apply(x), apply(y)]
+                let transform = TransformParam::load_at(d, Buffer::Params, first);
+                let apply = |row: Vec3<D::F>| d.fma(row.x, u, d.fma(row.y, v, row.z));
+                [apply(transform.u), apply(transform.v)]
             }
         }
     }
@@ -308,7 +305,7 @@ impl UvMap {
 /// An image texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Image<U, V, F, T> {
-    /// Offset in the parameter block of: first word among the texels, width, height, 0.
+    /// Offset of an [`ImageParam`] in the parameter block.
     pub slot: u32,
     /// Coordinates.
     pub uv: UvMap,
@@ -332,7 +329,11 @@ impl<U: Wrapping, V: Wrapping, F: Filtering, T: TexelFormat> Image<U, V, F, T> {
         lerp: impl Fn(S, S, D::F) -> S,
     ) -> S {
         let slot = surface.params + d.uint(self.slot);
-        let [[first, width, height, _]] = d.load_rows(Buffer::Params, slot);
+        let ImageParam {
+            first,
+            width,
+            height,
+        } = ImageParam::load_at(d, Buffer::Params, slot);
         let (columns, rows) = (d.to_real(width), d.to_real(height));
         let [u, v] = self.uv.apply(d, surface);
         let texel = |x: D::F, y: D::F| {

@@ -5,12 +5,14 @@
 //! per point, before the BSDF, and enter it as [`Bound`] values or, interpreted, as [`Input`] numbers.
 
 mod image;
+mod params;
 mod srgb;
 
 pub use image::{
     AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8,
     Mirror, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
 };
+pub use params::{ColorParam, ImageParam, TransformParam};
 pub use srgb::{srgb_code, srgb_table};
 
 use crate::domain::{Buffer, Domain};
@@ -54,8 +56,8 @@ pub struct Param(pub u32);
 impl<D: Domain> ColorSource<D> for Param {
     #[inline(always)]
     fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F> {
-        let [row] = d.load_rows(Buffer::Params, surface.params + d.uint(self.0));
-        Vec3::from_row(d, row)
+        let first = surface.params + d.uint(self.0);
+        ColorParam::load_at(d, Buffer::Params, first).color
     }
 }
 impl<D: Domain> ScalarSource<D> for Param {

@@ -3,11 +3,12 @@
 use super::{CostMap, Path, Settings, Tracer, Vertex};
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
-use crate::domain::{Buffer, Domain};
+use crate::domain::Domain;
 use crate::light::LightKinds;
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
 use crate::sampler::{Sampler, hash, unit};
+use crate::triangle::program_of;
 
 /// What a debug picture shows. What is not there is black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -73,7 +74,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for Debug<D, S> {
                 vec3(u, v, zero)
             }
             DebugView::Programs => {
-                let program = d.load(Buffer::TrianglePrograms, vertex.triangle);
+                let program = program_of(d, vertex.triangle);
                 let channel = |salt: u32| unit(d, hash(d, program * d.uint(3) + d.uint(salt)));
                 // Never as dark as what is not there.
                 vec3(channel(1), channel(2), channel(3)).map(|c| d.fma(c, d.lit(0.8), d.lit(0.2)))

@@ -1,11 +1,17 @@
 //! A scene's buffers full of random numbers, and the formulas that are run over them.
 #![allow(dead_code, reason = "each test uses some of it")]
 
+use residual_render::alias_table::AliasEntry;
+use residual_render::camera::CameraRecord;
 use residual_render::domain::tape::{Function, Node, Op, Statement};
 use residual_render::domain::{Buffer, Domain};
-use residual_render::light::environment::HEADER;
-use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD};
+use residual_render::light::{
+    AreaRecord, EnvironmentHeader, LIGHT_WORDS, PunctualRecord, set_environment, set_picks,
+};
+use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
+use residual_render::surface::{TangentRecord, VerticesRecord};
+use residual_render::texture::ImageParam;
 use residual_render::triangle::TriangleRecord;
 
 /// Words of a triangle's parameters.
@@ -66,15 +72,27 @@ pub(crate) fn scene() -> SceneData {
     fill(Buffer::Colors, 4 * vertices, 0.0, 1.0);
     fill(Buffer::Params, BLOCK * TRIANGLES, 0.05, 1.0);
     fill(Buffer::Texels, 4 * 64, 0.0, 1.0);
-    fill(Buffer::Lights, RECORD * 5, -1.0, 1.0);
-    fill(Buffer::Camera, 12, -1.0, 1.0);
-    fill(
-        Buffer::LightAlias,
-        ALIAS_HEADER + ALIAS_ENTRY * 5,
-        0.05,
-        1.0,
-    );
-    fill(Buffer::Environment, HEADER + ALIAS_ENTRY * 12, 0.1, 1.0);
+    fill(Buffer::Lights, LIGHT_WORDS * 5, -1.0, 1.0);
+    let mut vector = || [0; 3].map(|_| random.between(-1.0, 1.0)).into();
+    data.push(CameraRecord {
+        eye: vector(),
+        right: vector(),
+        up: vector(),
+        forward: vector(),
+    });
+    let picks = alias_entries(&mut random, 5, 2);
+    set_picks(&mut data, picks.into_iter());
+    let header = EnvironmentHeader {
+        width: 4,
+        height: 3,
+        first_texel: 0,
+        strength: 1.5,
+        cos: 0.6,
+        sin: 0.8,
+        light: 4,
+    };
+    let texels = alias_entries(&mut random, 12, 5);
+    set_environment(&mut data, header, texels.into_iter());
     for triangle in 0..TRIANGLES {
         let corners = [[0; 3]; 3].map(|corner| corner.map(|_| random.between(-2.0, 2.0)));
         let record = TriangleRecord {
@@ -86,33 +104,52 @@ pub(crate) fn scene() -> SceneData {
             data.set_light(triangle as usize, 0);
         }
         let first = 3 * triangle;
-        data.buffer_mut(Buffer::Indices)
-            .extend([first, first + 1, first + 2, 0]);
+        data.push(VerticesRecord {
+            a: first,
+            b: first + 1,
+            c: first + 2,
+        });
         for vertex in 0..3 {
-            let sign = if triangle % 2 == 0 { 1.0_f32 } else { -1.0 };
-            let word = 4 * (3 * triangle + vertex) + 3;
-            data.buffer_mut(Buffer::Tangents)[word as usize] = sign.to_bits();
+            let sign = if triangle % 2 == 0 { 1.0 } else { -1.0 };
+            let vertex = (3 * triangle + vertex) as usize;
+            data.change(vertex, |record| TangentRecord { sign, ..record });
         }
         let slot = (BLOCK * triangle + IMAGE) as usize;
-        data.buffer_mut(Buffer::Params)[slot..slot + 3].copy_from_slice(&[4 * triangle, 5, 3]);
+        let image = ImageParam {
+            first: 4 * triangle,
+            width: 5,
+            height: 3,
+        };
+        image.write_to(&mut data.buffer_mut(Buffer::Params)[slot..]);
     }
-    for light in 0..5 {
-        let words = data.buffer_mut(Buffer::Lights);
-        words[RECORD as usize * light] = light as u32;
-        let alias = data.buffer_mut(Buffer::LightAlias);
-        alias[0] = 5;
-        alias[ALIAS_HEADER as usize + ALIAS_ENTRY as usize * light + 1] = (light as u32 + 2) % 5;
-    }
-    // Kind 0 is an emitting triangle, seen from both sides.
-    data.buffer_mut(Buffer::Lights)[1..3].copy_from_slice(&[1, 1]);
-    let environment = data.buffer_mut(Buffer::Environment);
-    environment[..3].copy_from_slice(&[4, 3, 0]);
-    environment[3..6].copy_from_slice(&[1.5_f32, 0.6, 0.8].map(f32::to_bits));
-    environment[6] = 4;
-    for texel in 0..12 {
-        environment[HEADER as usize + ALIAS_ENTRY as usize * texel + 1] = (texel as u32 + 5) % 12;
+    let lights = data.buffer_mut(Buffer::Lights);
+    let records = lights.chunks_exact_mut(LIGHT_WORDS as usize);
+    for (kind, words) in (0..).zip(records) {
+        if kind == 0 {
+            let lamp = AreaRecord {
+                kind,
+                triangle: 1,
+                double_sided: 1,
+            };
+            lamp.write_to(words);
+        } else {
+            let record = PunctualRecord::from_words(words);
+            PunctualRecord { kind, ..record }.write_to(words);
+        }
     }
     data
+}
+
+/// A table of random densities, which no weights have; the alias of each slot is `shift` slots on.
+fn alias_entries(random: &mut Random, count: u32, shift: u32) -> Vec<AliasEntry> {
+    let mut number = || random.between(0.05, 1.0);
+    let entry = |slot| AliasEntry {
+        threshold: number(),
+        alias: (slot + shift) % count,
+        density: number(),
+        alias_density: number(),
+    };
+    (0..count).map(entry).collect()
 }
 
 /// What a formula yields.

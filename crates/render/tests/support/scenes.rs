@@ -1,8 +1,10 @@
-//! Scene data made by hand, after the layouts that `domain::Buffer`, `light` and `light::environment` document.
+//! Scene data made by hand.
 
+use residual_render::alias_table::AliasEntry;
 use residual_render::domain::{Buffer, Domain};
-use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD, environment};
+use residual_render::light::{self, EnvironmentHeader, LightRecord};
 use residual_render::math::vec3::vec3;
+use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, Hit, Surface};
 use residual_render::triangle::TriangleRecord;
@@ -15,10 +17,6 @@ pub(crate) type Triangle = [[f32; 3]; 3];
 /// A triangle in the plane z = 0 around the origin, its front up.
 pub(crate) const FLOOR: Triangle = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 2.0, 0.0]];
 
-fn reals<'a>(values: impl IntoIterator<Item = &'a f32>) -> Vec<u32> {
-    values.into_iter().map(|value| value.to_bits()).collect()
-}
-
 /// Triangles with programs and parameters 0.
 pub(crate) fn scene(triangles: &[Triangle]) -> SceneData {
     let mut data = SceneData::default();
@@ -28,38 +26,33 @@ pub(crate) fn scene(triangles: &[Triangle]) -> SceneData {
     data
 }
 
-/// Rows of an alias table with the densities of slots and aliases.
-fn alias_rows(weights: &[f64], density: impl Fn(f64) -> f64) -> Vec<u32> {
-    let density = |k: usize| (density(weights[k]) as f32).to_bits();
-    let row = |(k, (threshold, other)): (usize, (f32, u32))| {
-        let [of_slot, of_alias] = [density(k), density(other as usize)];
-        [threshold.to_bits(), other, of_slot, of_alias]
+/// Entries of an alias table with the densities of slots and aliases.
+fn alias_entries(
+    weights: &[f64],
+    density: impl Fn(f64) -> f64,
+) -> impl ExactSizeIterator<Item = AliasEntry> {
+    let density = move |k: usize| density(weights[k]) as f32;
+    let entry = move |(k, (threshold, alias)): (usize, (f32, u32))| AliasEntry {
+        threshold,
+        alias,
+        density: density(k),
+        alias_density: density(alias as usize),
     };
-    let table = alias_table(weights).into_iter().enumerate();
-    table.flat_map(row).collect()
+    alias_table(weights).into_iter().enumerate().map(entry)
 }
 
-/// Lights: their records without padding, with the weights by which they are picked.
-pub(crate) fn set_lights(data: &mut SceneData, records: &[Vec<u32>], weights: &[f64]) {
+/// Lights, with the weights by which they are picked.
+pub(crate) fn set_lights<R: BufferRecord>(data: &mut SceneData, records: &[R], weights: &[f64]) {
     assert_eq!(records.len(), weights.len());
-    let lights = data.buffer_mut(Buffer::Lights);
-    lights.clear();
-    for record in records {
-        lights.extend_from_slice(record);
-        lights.resize(lights.len().next_multiple_of(RECORD as usize), 0);
+    data.buffer_mut(Buffer::Lights).clear();
+    for &record in records {
+        light::push_light(data, record);
     }
     let total: f64 = weights.iter().sum();
-    let alias = data.buffer_mut(Buffer::LightAlias);
-    *alias = vec![records.len() as u32, 0, 0, 0];
-    assert_eq!(alias.len(), ALIAS_HEADER as usize);
-    alias.extend(alias_rows(weights, |weight| weight / total));
-    assert_eq!(
-        alias.len(),
-        ALIAS_HEADER as usize + records.len() * ALIAS_ENTRY as usize
-    );
+    light::set_picks(data, alias_entries(weights, |weight| weight / total));
 }
 
-/// An environment image of `width` columns, rotated about +Y, as light number 0 among the texels from word 0.
+/// An environment image of `width` columns, rotated about +Y, as light 0 among the texels from word 0.
 pub(crate) fn set_environment(
     data: &mut SceneData,
     width: usize,
@@ -67,10 +60,8 @@ pub(crate) fn set_environment(
     rotation: f64,
 ) {
     let height = texels.len() / width;
-    let words = texels
-        .iter()
-        .flat_map(|[r, g, b]| reals(&[*r, *g, *b, 1.0]));
-    *data.buffer_mut(Buffer::Texels) = words.collect();
+    let words = texels.iter().flat_map(|&[r, g, b]| [r, g, b, 1.0]);
+    *data.buffer_mut(Buffer::Texels) = words.map(f32::to_bits).collect();
     // The integral over each texel of the bilinear luminance: tent weights 1/8, 6/8, 1/8 along each axis.
     let luminance = |x: i64, y: i64| {
         let x = x.rem_euclid(width as i64) as usize;
@@ -90,20 +81,26 @@ pub(crate) fn set_environment(
         }
     }
     let total: f64 = weights.iter().sum();
-    let mut words = vec![width as u32, height as u32, 0, 1.0_f32.to_bits()];
-    words.extend(reals(&[rotation.cos() as f32, rotation.sin() as f32]));
-    words.extend([0, 0]);
-    assert_eq!(words.len(), environment::HEADER as usize);
-    words.extend(alias_rows(&weights, |weight| {
-        weight / total * weights.len() as f64
-    }));
-    *data.buffer_mut(Buffer::Environment) = words;
-    set_lights(data, &[vec![0]], &[1.0]);
+    let header = EnvironmentHeader {
+        width: width as u32,
+        height: height as u32,
+        first_texel: 0,
+        strength: 1.0,
+        cos: rotation.cos() as f32,
+        sin: rotation.sin() as f32,
+        light: 0,
+    };
+    let mean = total / weights.len() as f64;
+    let entries = alias_entries(&weights, |weight| weight / mean);
+    light::set_environment(data, header, entries);
+    set_lights(data, &[LightRecord { kind: 0 }], &[1.0]);
 }
 
-/// Parameters of the one block that all triangles use.
-pub(crate) fn set_params(data: &mut SceneData, values: &[f32]) {
-    *data.buffer_mut(Buffer::Params) = reals(values);
+/// The one parameter block, which all triangles use: a record.
+pub(crate) fn set_params(data: &mut SceneData, record: impl BufferRecord) {
+    let params = data.buffer_mut(Buffer::Params);
+    params.clear();
+    record.append_to(params);
 }
 
 /// The point of triangle `prim` at barycentric (u, v), seen along `dir`.

@@ -218,7 +218,7 @@ fn alpha(out: &mut String, programs: &[Program], textures: &Textures<'_>) -> fmt
     writeln!(out, "    fn covers(&self, ray: &Ray, hit: &Hit) -> bool {{")?;
     writeln!(
         out,
-        "        match self.buffers.word(Buffer::TrianglePrograms, hit.prim) {{"
+        "        match render::triangle::program_in(self.buffers, hit.prim) {{"
     )?;
     for (number, program) in programs.iter().enumerate() {
         if let Some(alpha) = &program.alpha {

@@ -1,8 +1,7 @@
 //! The camera: one of the scene's, one given by the user, or one that frames the scene.
 
 use glam::{Quat, Vec3};
-use residual_render::camera::AnyCamera;
-use residual_render::domain::Buffer;
+use residual_render::camera::{AnyCamera, CameraRecord};
 use residual_render::scene_data::SceneData;
 
 use super::{PlanError, PlanOptions};
@@ -174,9 +173,13 @@ pub(super) fn place(
     };
     let right = camera.rotation * Vec3::X * (half_height * aspect);
     let up = camera.rotation * Vec3::Y * half_height;
-    let words = [camera.position, right, up, forward]
-        .into_iter()
-        .flat_map(|v| v.to_array());
-    *data.buffer_mut(Buffer::Camera) = words.map(f32::to_bits).collect();
+    let [eye, right, up, forward] =
+        [camera.position, right, up, forward].map(|v| v.to_array().into());
+    data.push(CameraRecord {
+        eye,
+        right,
+        up,
+        forward,
+    });
     Ok((kind, camera.name))
 }

@@ -3,7 +3,9 @@
 use glam::{Mat3, Vec3, Vec4};
 use residual_render::domain::Buffer;
 use residual_render::scene_data::SceneData;
-use residual_render::surface::Attributes;
+use residual_render::surface::{
+    Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
+};
 use residual_render::triangle::TriangleRecord;
 
 use super::camera::Bounds;
@@ -23,7 +25,7 @@ struct Visible<'a> {
     mesh: &'a MeshDesc,
     planned: &'a PlannedMaterial,
     reads: Attributes,
-    /// Number of its first vertex; of no use where nothing is read.
+    /// Index of its first vertex; of no use where nothing is read.
     first_vertex: u32,
 }
 
@@ -72,7 +74,9 @@ fn visible<'a>(
 struct Attribute {
     buffer: Buffer,
     is_read: fn(Attributes) -> bool,
-    pack: fn(&Visible<'_>, &mut Vec<u32>),
+    /// Of its record.
+    words: u32,
+    pack: fn(&Visible<'_>, &mut SceneData),
 }
 
 /// From the one that the fewest materials read, as a rule, to the one that the most do.
@@ -80,21 +84,25 @@ const ATTRIBUTES: [Attribute; 4] = [
     Attribute {
         buffer: Buffer::Tangents,
         is_read: |reads| reads.tangents,
+        words: TangentRecord::WORDS,
         pack: pack_tangents,
     },
     Attribute {
         buffer: Buffer::Colors,
         is_read: |reads| reads.colors,
+        words: ColorRecord::WORDS,
         pack: pack_colors,
     },
     Attribute {
         buffer: Buffer::Uvs,
         is_read: |reads| reads.uv0 || reads.uv1,
+        words: UvRecord::WORDS,
         pack: pack_uvs,
     },
     Attribute {
         buffer: Buffer::Normals,
         is_read: |reads| reads.normals,
+        words: NormalRecord::WORDS,
         pack: pack_normals,
     },
 ];
@@ -130,7 +138,7 @@ pub(super) fn pack(
     Ok(Geometry { bounds, objects })
 }
 
-/// Numbers the vertices and writes the buffers of attributes. Vertices whose material reads nothing are none; those
+/// Orders the vertices and writes the buffers of attributes. Vertices whose material reads nothing are none; those
 /// that read the rarest attributes come first, so that each buffer ends with the last vertex that reads it.
 fn pack_vertices(visible: &mut [Visible<'_>], data: &mut SceneData) -> Result<(), PlanError> {
     let mut order: Vec<usize> = (0..visible.len())
@@ -152,21 +160,18 @@ fn pack_vertices(visible: &mut [Visible<'_>], data: &mut SceneData) -> Result<()
     for attribute in &ATTRIBUTES {
         let reads = |&k: &usize| (attribute.is_read)(visible[k].reads);
         let readers = order.iter().rposition(reads).map_or(0, |last| last + 1);
-        let buffer = data.buffer_mut(attribute.buffer);
         for k in &order[..readers] {
             let seen = &visible[*k];
             if reads(k) {
-                (attribute.pack)(seen, buffer);
+                (attribute.pack)(seen, data);
             } else {
-                buffer.resize(buffer.len() + 4 * seen.mesh.positions.len(), 0);
+                let buffer = data.buffer_mut(attribute.buffer);
+                let unread = attribute.words as usize * seen.mesh.positions.len();
+                buffer.resize(buffer.len() + unread, 0);
             }
         }
     }
     Ok(())
-}
-
-fn extend(buffer: &mut Vec<u32>, values: impl IntoIterator<Item = f32>) {
-    buffer.extend(values.into_iter().map(f32::to_bits));
 }
 
 fn linear(seen: &Visible<'_>) -> Mat3 {
@@ -182,7 +187,7 @@ fn side(linear: Mat3) -> f32 {
     }
 }
 
-fn pack_normals(seen: &Visible<'_>, buffer: &mut Vec<u32>) {
+fn pack_normals(seen: &Visible<'_>, data: &mut SceneData) {
     let linear = linear(seen);
     // Normals go by the cofactor matrix, which exists for singular transforms too; its sign mirrors with them.
     let cofactors = Mat3::from_cols(
@@ -191,34 +196,44 @@ fn pack_normals(seen: &Visible<'_>, buffer: &mut Vec<u32>) {
         linear.x_axis.cross(linear.y_axis),
     );
     for &n in &seen.mesh.normals {
-        let n = (cofactors * n * side(linear)).normalize_or(n);
-        extend(buffer, n.extend(0.0).to_array());
+        let normal = (cofactors * n * side(linear)).normalize_or(n);
+        data.push(NormalRecord {
+            normal: normal.to_array().into(),
+        });
     }
 }
 
-fn pack_tangents(seen: &Visible<'_>, buffer: &mut Vec<u32>) {
+fn pack_tangents(seen: &Visible<'_>, data: &mut SceneData) {
     let linear = linear(seen);
     // (0, 0, 0) leaves the frame to the normal.
     let none = vec![Vec4::new(0.0, 0.0, 0.0, 1.0); seen.mesh.positions.len()];
     for &t in seen.mesh.tangents.as_ref().unwrap_or(&none) {
-        let turned = (linear * t.truncate()).normalize_or_zero();
-        extend(buffer, turned.extend(t.w * side(linear)).to_array());
+        let tangent = (linear * t.truncate()).normalize_or_zero();
+        data.push(TangentRecord {
+            tangent: tangent.to_array().into(),
+            sign: t.w * side(linear),
+        });
     }
 }
 
-fn pack_uvs(seen: &Visible<'_>, buffer: &mut Vec<u32>) {
+fn pack_uvs(seen: &Visible<'_>, data: &mut SceneData) {
     let uv = |set: usize, vertex: usize| match &seen.mesh.uvs[set] {
         Some(uvs) => uvs[vertex].to_array(),
         None => [0.0; 2],
     };
-    let row = |vertex| uv(0, vertex).into_iter().chain(uv(1, vertex));
-    extend(buffer, (0..seen.mesh.positions.len()).flat_map(row));
+    for vertex in 0..seen.mesh.positions.len() {
+        let ([u0, v0], [u1, v1]) = (uv(0, vertex), uv(1, vertex));
+        data.push(UvRecord { u0, v0, u1, v1 });
+    }
 }
 
-fn pack_colors(seen: &Visible<'_>, buffer: &mut Vec<u32>) {
-    match &seen.mesh.colors {
-        Some(colors) => extend(buffer, colors.iter().flat_map(|c| c.to_array())),
-        None => extend(buffer, vec![1.0; seen.mesh.positions.len() * 4]),
+fn pack_colors(seen: &Visible<'_>, data: &mut SceneData) {
+    let white = vec![Vec4::ONE; seen.mesh.positions.len()];
+    for color in seen.mesh.colors.as_ref().unwrap_or(&white) {
+        data.push(ColorRecord {
+            color: color.truncate().to_array().into(),
+            alpha: color.w,
+        });
     }
 }
 
@@ -247,10 +262,9 @@ fn pack_triangles(object_index: u32, seen: &Visible<'_>, positions: &[Vec3], dat
 
 /// The vertices of each triangle; those of a material that reads none are never asked for.
 fn pack_indices(seen: &Visible<'_>, data: &mut SceneData) {
-    let indices = data.buffer_mut(Buffer::Indices);
     for triangle in turned(seen.mesh, seen.instance) {
         let [a, b, c] = triangle.map(|corner| seen.first_vertex + corner);
-        indices.extend([a, b, c, 0]);
+        data.push(VerticesRecord { a, b, c });
     }
 }
 

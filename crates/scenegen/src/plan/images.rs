@@ -4,18 +4,18 @@ use std::collections::BTreeMap;
 
 use residual_render::domain::Buffer;
 use residual_render::scene_data::SceneData;
-use residual_render::texture::{AnyFormat, srgb_table};
+use residual_render::texture::{AnyFormat, ImageParam, srgb_table};
 
 use super::PlanError;
 use crate::desc::{ImageDesc, SceneDesc, Texels};
 
-/// The images in use, with their places among the texels.
+/// The images in use, with where they lie among the texels.
 #[derive(Debug, Default)]
 pub(super) struct Images {
-    /// Number of the image, first word.
-    places: Vec<(usize, u32)>,
+    /// Index of the image, first word.
+    firsts: Vec<(usize, u32)>,
     words: u64,
-    /// By the image's number, once asked for.
+    /// By the image's index, once asked for.
     extremes: BTreeMap<usize, Extremes>,
 }
 
@@ -55,17 +55,21 @@ fn words(image: &ImageDesc) -> u64 {
 }
 
 impl Images {
-    /// First word of an image among the texels, width, height.
-    pub(super) fn place(&mut self, scene: &SceneDesc, image: usize) -> [u32; 3] {
+    /// The image among the texels, where it is given a place if it has none yet.
+    pub(super) fn param(&mut self, scene: &SceneDesc, image: usize) -> ImageParam {
         let desc = &scene.images[image];
-        let found = self.places.iter().find(|(number, _)| *number == image);
+        let found = self.firsts.iter().find(|(index, _)| *index == image);
         let first = found.map(|(_, first)| *first).unwrap_or_else(|| {
             let first = self.words as u32;
-            self.places.push((image, first));
+            self.firsts.push((image, first));
             self.words += words(desc);
             first
         });
-        [first, desc.width, desc.height]
+        ImageParam {
+            first,
+            width: desc.width,
+            height: desc.height,
+        }
     }
 
     /// Least and greatest value that a channel has when it is read, bytes as `format` says.
@@ -95,7 +99,7 @@ impl Images {
         }
         let buffer = data.buffer_mut(Buffer::Texels);
         buffer.reserve_exact(self.words as usize);
-        for &(image, _) in &self.places {
+        for &(image, _) in &self.firsts {
             match &scene.images[image].texels {
                 Texels::Rgba8(texels) => {
                     buffer.extend(texels.iter().map(|&texel| u32::from_le_bytes(texel)));

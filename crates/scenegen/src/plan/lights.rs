@@ -2,14 +2,14 @@
 
 use std::collections::HashSet;
 
-use residual_render::domain::Buffer;
-use residual_render::light::environment::HEADER;
-use residual_render::light::{ALIAS_ENTRY, ALIAS_HEADER, RECORD};
+use residual_render::alias_table::alias_entries;
+use residual_render::light::{
+    self, AreaRecord, EnvironmentHeader, LightRecord, PunctualRecord, push_light, set_picks,
+};
 use residual_render::program::{ColorNode, LightNode, SourceNode};
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
 
-use super::alias;
 use super::geometry::Geometry;
 use super::images::Images;
 use super::{LightKindUse, Materials};
@@ -22,8 +22,7 @@ use crate::desc::{
 pub(super) struct PlannedLights {
     pub(super) kinds: Vec<LightNode>,
     pub(super) uses: Vec<LightKindUse>,
-    records: Vec<[u32; RECORD as usize]>,
-    /// Power of each light, and the number of its kind.
+    /// Power of each light, and the index of its kind.
     powers: Vec<(f64, usize)>,
 }
 
@@ -39,12 +38,12 @@ pub(super) fn plan_lights(
     let radius = f64::from(geometry.bounds.sphere().1);
     lights.add_emitting_triangles(scene, materials, geometry, data);
     for light in &scene.lights {
-        lights.add_punctual(light, radius);
+        lights.add_punctual(light, radius, data);
     }
     if let Some(environment) = &scene.environment {
         lights.add_environment(scene, environment, images, radius, data);
     }
-    lights.write(data);
+    lights.set_picks(data);
     lights
 }
 
@@ -86,11 +85,8 @@ impl PlannedLights {
         })
     }
 
-    fn push(&mut self, kind: usize, source: &str, power: f64, words: &[u32]) {
-        let mut record = [0; RECORD as usize];
-        record[0] = kind as u32;
-        record[1..=words.len()].copy_from_slice(words);
-        self.records.push(record);
+    /// Notes a light whose record was added to the data.
+    fn count(&mut self, kind: usize, source: &str, power: f64) {
         self.powers.push((power, kind));
         let of_kind = &mut self.uses[kind];
         of_kind.count += 1;
@@ -135,35 +131,32 @@ impl PlannedLights {
                     * 0.5;
                 let power = std::f64::consts::PI * sides * area * radiance;
                 if power > 0.0 && power.is_finite() {
-                    let number = self.records.len() as u32;
-                    data.set_light(prim as usize, number);
+                    data.set_light(prim as usize, self.powers.len() as u32);
                     let kind = *kind.get_or_insert_with(|| self.kind(node.clone()));
-                    let record = [prim, u32::from(emission.double_sided)];
-                    self.push(kind, &source, power, &record);
+                    let record = AreaRecord {
+                        kind: kind as u32,
+                        triangle: prim,
+                        double_sided: u32::from(emission.double_sided),
+                    };
+                    push_light(data, record);
+                    self.count(kind, &source, power);
                 }
             }
         }
     }
 
-    fn add_punctual(&mut self, light: &LightDesc, radius: f64) {
+    fn add_punctual(&mut self, light: &LightDesc, radius: f64, data: &mut SceneData) {
         let strength = luminance(light.intensity);
         if strength <= 0.0 {
             return;
         }
-        let words = |vectors: &[[f32; 3]]| -> Vec<u32> {
-            vectors.iter().flatten().map(|c| c.to_bits()).collect()
-        };
-        let source = format!("light {:?}", light.name);
         let sphere = 4.0 * std::f64::consts::PI;
-        match light.kind {
+        // The kind is known below.
+        let record =
+            |position: glam::Vec3| PunctualRecord::new(0, position.to_array(), light.intensity);
+        let (node, power, record) = match light.kind {
             LightKind::Point { position } => {
-                let kind = self.kind(LightNode::Point);
-                self.push(
-                    kind,
-                    &source,
-                    sphere * strength,
-                    &words(&[position.to_array(), light.intensity]),
-                );
+                (LightNode::Point, sphere * strength, record(position))
             }
             LightKind::Spot {
                 position,
@@ -171,27 +164,31 @@ impl PlannedLights {
                 inner,
                 outer,
             } => {
-                let kind = self.kind(LightNode::Spot);
                 // KHR_lights_punctual: scale = 1/(cos inner − cos outer), offset = −cos outer·scale.
                 let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
-                let mut record = words(&[position.to_array(), light.intensity]);
-                record.push(scale.to_bits());
-                record.extend(words(&[direction.to_array()]));
-                record.push((-outer.cos() * scale).to_bits());
+                let record = PunctualRecord {
+                    scale,
+                    axis: direction.to_array().into(),
+                    offset: -outer.cos() * scale,
+                    ..record(position)
+                };
                 let cone = 0.5 * sphere * (1.0 - f64::from(outer.cos()));
-                self.push(kind, &source, cone * strength, &record);
+                (LightNode::Spot, cone * strength, record)
             }
             LightKind::Directional { direction } => {
-                let kind = self.kind(LightNode::Directional);
                 let power = std::f64::consts::PI * radius * radius * strength;
-                self.push(
-                    kind,
-                    &source,
-                    power,
-                    &words(&[(-direction).to_array(), light.intensity]),
-                );
+                (LightNode::Directional, power, record(-direction))
             }
-        }
+        };
+        let kind = self.kind(node);
+        push_light(
+            data,
+            PunctualRecord {
+                kind: kind as u32,
+                ..record
+            },
+        );
+        self.count(kind, &format!("light {:?}", light.name), power);
     }
 
     fn add_environment(
@@ -208,42 +205,37 @@ impl PlannedLights {
         if total <= 0.0 || environment.strength <= 0.0 {
             return;
         }
-        let number = self.records.len() as u32;
+        let index = self.powers.len() as u32;
         let kind = self.kind(LightNode::Environment);
         // The weights' mean is the mean of luminance·sin θ; ∫L dω = 2π²·that.
         let mean = total / weights.len() as f64;
         let irradiance =
             2.0 * std::f64::consts::PI.powi(2) * mean * f64::from(environment.strength);
-        self.push(
+        push_light(data, LightRecord { kind: kind as u32 });
+        self.count(
             kind,
             &format!("environment {:?}", image.name),
             std::f64::consts::PI * radius * radius * irradiance,
-            &[],
         );
 
-        let place = images.place(scene, environment.image);
+        let texels = images.param(scene, environment.image);
         let (sin, cos) = environment.rotation.sin_cos();
-        let header = [
-            place[1],
-            place[2],
-            place[0],
-            environment.strength.to_bits(),
-            cos.to_bits(),
-            sin.to_bits(),
-            number,
-            0,
-        ];
-        debug_assert_eq!(header.len(), HEADER as usize);
-        let buffer = data.buffer_mut(Buffer::Environment);
-        buffer.reserve_exact(header.len() + weights.len() * ALIAS_ENTRY as usize);
-        buffer.extend(header);
-        buffer.extend(alias::rows(&weights, mean).flatten());
+        let header = EnvironmentHeader {
+            width: texels.width,
+            height: texels.height,
+            first_texel: texels.first,
+            strength: environment.strength,
+            cos,
+            sin,
+            light: index,
+        };
+        light::set_environment(data, header, alias_entries(&weights, mean));
     }
 
     /// Half of the picks go by power, half evenly to emitting triangles, points, spots, … as far as there are any, so
     /// that a bright sky outside does not starve the lamps inside. How many *programs* for emission there are must
     /// not matter: it differs between binding policies, whose images are the same.
-    fn write(&self, data: &mut SceneData) {
+    fn set_picks(&self, data: &mut SceneData) {
         let variant = |kind: usize| std::mem::discriminant(&self.kinds[kind]);
         let total: f64 = self.powers.iter().map(|(power, _)| power).sum();
         let of_variant = |kind: usize| -> f64 {
@@ -259,13 +251,7 @@ impl PlannedLights {
             0.5 * power / total + 0.5 * power / sums[kind] / variants.len() as f64
         };
         let probabilities: Vec<f64> = self.powers.iter().map(probability).collect();
-        let alias = data.buffer_mut(Buffer::LightAlias);
-        alias.extend([probabilities.len() as u32, 0, 0, 0]);
-        debug_assert_eq!(alias.len(), ALIAS_HEADER as usize);
-        if !probabilities.is_empty() {
-            alias.extend(alias::rows(&probabilities, 1.0).flatten());
-        }
-        *data.buffer_mut(Buffer::Lights) = self.records.concat();
+        set_picks(data, alias_entries(&probabilities, 1.0));
     }
 }
 

@@ -4,7 +4,6 @@
 //! print and interpreters build, and the [`SceneData`] that it reads. Materials whose structure agrees share a
 //! program; what distinguishes them are parameters.
 
-mod alias;
 mod camera;
 mod closed;
 mod explain;

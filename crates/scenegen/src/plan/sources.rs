@@ -3,8 +3,11 @@
 use std::collections::BTreeMap;
 
 use residual_render::program::{ColorNode, ImageNode, ScalarNode};
+use residual_render::record::BufferRecord;
 use residual_render::surface::Attributes;
-use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Image, UvMap};
+use residual_render::texture::{
+    AnyFilter, AnyFormat, AnyWrap, ColorParam, Image, TransformParam, UvMap,
+};
 
 use super::Binding;
 use super::images::Images;
@@ -88,15 +91,16 @@ impl<'a> Sources<'a> {
         }
     }
 
-    fn param(&mut self, words: impl IntoIterator<Item = u32>) -> u32 {
+    fn param(&mut self, value: f32) -> u32 {
         let offset = self.params.len() as u32;
-        self.params.extend(words);
+        self.params.push(value.to_bits());
         offset
     }
 
-    /// A parameter that is read as a row.
-    fn param_row(&mut self, [x, y, z]: [u32; 3]) -> u32 {
-        self.param([x, y, z, 0])
+    fn param_record(&mut self, record: impl BufferRecord) -> u32 {
+        let offset = self.params.len() as u32;
+        record.append_to(&mut self.params);
+        offset
     }
 
     /// A number: 0 and 1 are always constants, since they remove code.
@@ -104,7 +108,7 @@ impl<'a> Sources<'a> {
         if value == 0.0 || value == 1.0 || self.binding == Binding::Constants {
             ScalarNode::Const(value)
         } else {
-            ScalarNode::Param(self.param([value.to_bits()]))
+            ScalarNode::Param(self.param(value))
         }
     }
 
@@ -113,7 +117,9 @@ impl<'a> Sources<'a> {
         if value == [0.0; 3] || value == [1.0; 3] || self.binding == Binding::Constants {
             ColorNode::Const(value)
         } else {
-            ColorNode::Param(self.param_row(value.map(f32::to_bits)))
+            ColorNode::Param(self.param_record(ColorParam {
+                color: value.into(),
+            }))
         }
     }
 
@@ -300,13 +306,13 @@ impl<'a> Sources<'a> {
             0 => self.read.uv0 |= self.available.uv0,
             _ => self.read.uv1 |= self.available.uv1,
         }
-        let place = self.images.place(self.scene, desc.image);
-        let slot = self.param_row(place);
+        let image = self.images.param(self.scene, desc.image);
+        let slot = self.param_record(image);
         let name = self.scene.images[desc.image].name.clone();
         self.image_names.insert(slot, name);
         let transform = texture.transform.map(|matrix| {
-            let [first, _] = matrix.map(|row| self.param_row(row.map(f32::to_bits)));
-            first
+            let [u, v] = matrix.map(Into::into);
+            self.param_record(TransformParam { u, v })
         });
         let uv = UvMap {
             set: texture.uv_set,

@@ -1,4 +1,71 @@
-//! Alias tables (Vose 1991), built in `f64`.
+//! Alias tables (Walker 1974, Vose 1991): outcomes drawn with given probabilities by reading one entry.
+
+use crate::domain::{Buffer, Domain};
+use crate::record::record;
+
+record! {
+    /// A slot of a table: it yields the outcome of its own index, or its alias.
+    pub struct AliasEntry {
+        row {
+            /// The part of the slot, from 0 on, in which it yields its own index.
+            threshold: real,
+            /// Index of the other outcome.
+            alias: word,
+            /// Density of the outcome that has the slot's index.
+            density: real,
+            /// Density of the alias.
+            alias_density: real,
+        }
+    }
+}
+
+/// A table in a buffer: its entries go on to the buffer's end.
+#[derive(Clone, Copy, Debug)]
+pub struct AliasTable {
+    /// The buffer.
+    pub buffer: Buffer,
+    /// The word at which the first entry starts.
+    pub first: u32,
+}
+
+impl AliasTable {
+    /// The first word of an entry.
+    #[inline(always)]
+    fn entry<D: Domain>(self, d: D, index: D::U) -> D::U {
+        index * d.uint(AliasEntry::WORDS) + d.uint(self.first)
+    }
+
+    /// The outcome for a slot and a number in [0, 1), the slot itself or its alias, and its density.
+    #[inline(always)]
+    pub fn resolve<D: Domain>(self, d: D, slot: D::U, u: D::F) -> (D::U, D::F) {
+        let entry = AliasEntry::load_at(d, self.buffer, self.entry(d, slot));
+        let stays = d.lt(u, entry.threshold);
+        (
+            d.select_u(stays, slot, entry.alias),
+            d.select(stays, entry.density, entry.alias_density),
+        )
+    }
+
+    /// The density of an outcome.
+    #[inline(always)]
+    pub fn density<D: Domain>(self, d: D, outcome: D::U) -> D::F {
+        let offset = AliasEntry::offsets().density;
+        d.load_real(self.buffer, self.entry(d, outcome) + d.uint(offset))
+    }
+}
+
+/// The entries of a table over `weights`, which are finite, not negative, and not all zero; none, if there are none. A density is a weight in terms of
+/// `unit`.
+pub fn alias_entries(weights: &[f64], unit: f64) -> impl ExactSizeIterator<Item = AliasEntry> {
+    let density = move |outcome: usize| (weights[outcome] / unit) as f32;
+    let entry = move |(index, slot): (usize, Slot)| AliasEntry {
+        threshold: slot.threshold,
+        alias: slot.alias,
+        density: density(index),
+        alias_density: density(slot.alias as usize),
+    };
+    table(weights).into_iter().enumerate().map(entry)
+}
 
 /// One slot: its threshold, and the outcome on the other side of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,22 +109,6 @@ fn table(weights: &[f64]) -> Vec<Slot> {
         }
     }
     slots
-}
-
-/// The rows that a renderer reads: threshold, alias, and the densities of slot and alias: their weights in
-/// terms of `unit`.
-pub(super) fn rows(weights: &[f64], unit: f64) -> impl Iterator<Item = [u32; 4]> {
-    let density = move |k: usize| ((weights[k] / unit) as f32).to_bits();
-    let row = move |(k, slot): (usize, Slot)| {
-        let alias = slot.alias as usize;
-        [
-            slot.threshold.to_bits(),
-            slot.alias,
-            density(k),
-            density(alias),
-        ]
-    };
-    table(weights).into_iter().enumerate().map(row)
 }
 
 #[cfg(test)]

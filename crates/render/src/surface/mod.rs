@@ -1,0 +1,175 @@
+//! What is known of the point where a ray met a surface, and how rays leave it again.
+
+mod attributes;
+mod offset;
+mod place;
+mod ray;
+mod shading_frame;
+
+pub use attributes::{
+    Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
+};
+pub use offset::offset_point;
+pub use ray::{Hit, Ray};
+
+use attributes::Corners;
+use place::Place;
+
+use crate::domain::Domain;
+use crate::math::{Frame, Vec3};
+
+/// The numbers of inputs that boxed programs keep per surface point.
+pub const MAX_INPUTS: usize = 16;
+
+/// A point of a surface and the way it was reached.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<D: Domain> {
+    /// The point, world space, computed from the corners.
+    pub point: Vec3<D::F>,
+    /// Bound on the rounding error of each component of `point`.
+    pub error: Vec3<D::F>,
+    /// Area of the triangle.
+    pub area: D::F,
+    /// Unit normal of the triangle, on the side from which the ray came.
+    pub geometric_normal: Vec3<D::F>,
+    /// Shading frame; its normal is on the side from which the ray came.
+    pub frame: Frame<D::F>,
+    /// The ray came from the front (counter-clockwise) side.
+    pub front: D::M,
+    /// Cosine between the geometric normal and the way back, ≥ 0.
+    pub cos_geometric: D::F,
+    /// Two sets of texture coordinates.
+    pub uv: [[D::F; 2]; 2],
+    /// Vertex colour.
+    pub color: Vec3<D::F>,
+    /// Vertex alpha.
+    pub alpha: D::F,
+    /// First word of the material's parameters.
+    pub params: D::U,
+    /// Index of the light that the triangle is, or [`NO_LIGHT`](crate::triangle::NO_LIGHT).
+    pub light: D::U,
+    /// Index of the object that the triangle belongs to.
+    pub object: D::U,
+    /// Inputs of a boxed program, evaluated once per point. Unused, and optimised away, in emitted programs.
+    pub inputs: [Vec3<D::F>; MAX_INPUTS],
+}
+
+impl<D: Domain> Surface<D> {
+    /// The surface at a hit of a ray with direction `dir`, with the attributes that its material reads.
+    #[inline(always)]
+    pub fn new(d: D, attributes: Attributes, hit: &Hit<D>, dir: Vec3<D::F>) -> Self {
+        Self::at(d, attributes, &Place::new(d, hit), hit.prim, dir)
+    }
+
+    /// The surface at a place on triangle `prim`.
+    #[inline(always)]
+    fn at(d: D, attributes: Attributes, place: &Place<D>, prim: D::U, dir: Vec3<D::F>) -> Self {
+        let (point, error, normal) = (place.point, place.error, place.normal);
+        let vertices = if attributes == Attributes::NONE {
+            // Of no use: nothing reads them.
+            [prim; 3]
+        } else {
+            let vertices = VerticesRecord::load(d, prim);
+            [vertices.a, vertices.b, vertices.c]
+        };
+        let outward = normal.normalize_any(d);
+        let wo = -dir.normalize(d);
+        let cos_outward = outward.dot(d, wo);
+        let front = d.lt(d.lit(0.0), cos_outward);
+        let zero = d.lit(0.0);
+        let geometric_normal = outward.map(|c| d.select(front, c, -c));
+
+        // Which side a stored normal is on is the file's affair, and files err: it is turned to the side of the
+        // geometric normal, which follows the winding alone.
+        let (shading_normal, turned) = if attributes.normals {
+            let normals = vertices.map(|vertex| NormalRecord::load(d, vertex));
+            let normals = Corners::new(normals, &place.weights);
+            let stored = normals.vector(d, |corner| corner.normal).normalize_any(d);
+            let turned = d.lt(stored.dot(d, geometric_normal), zero);
+            let normal = stored.map(|c| d.select(turned, -c, c));
+            (shading_frame::visible(d, normal, wo), turned)
+        } else {
+            (geometric_normal, !front)
+        };
+        let frame = if attributes.tangents {
+            let tangents = vertices.map(|vertex| TangentRecord::load(d, vertex));
+            let sign = tangents[0].sign;
+            let sign = d.select(turned, -sign, sign);
+            let tangents = Corners::new(tangents, &place.weights);
+            let tangent = tangents.vector(d, |corner| corner.tangent);
+            shading_frame::along_tangent(d, shading_normal, tangent, sign)
+        } else {
+            Frame::around(d, shading_normal)
+        };
+        let mut uv = [[zero; 2]; 2];
+        if attributes.uv0 || attributes.uv1 {
+            let uvs = vertices.map(|vertex| UvRecord::load(d, vertex));
+            let uvs = Corners::new(uvs, &place.weights);
+            if attributes.uv0 {
+                uv[0] = [
+                    uvs.real(d, |corner| corner.u0),
+                    uvs.real(d, |corner| corner.v0),
+                ];
+            }
+            if attributes.uv1 {
+                uv[1] = [
+                    uvs.real(d, |corner| corner.u1),
+                    uvs.real(d, |corner| corner.v1),
+                ];
+            }
+        }
+        let one = d.lit(1.0);
+        let (color, alpha) = if attributes.colors {
+            let colors = vertices.map(|vertex| ColorRecord::load(d, vertex));
+            let colors = Corners::new(colors, &place.weights);
+            (
+                colors.vector(d, |corner| corner.color),
+                colors.real(d, |corner| corner.alpha),
+            )
+        } else {
+            (Vec3::splat(one), one)
+        };
+        Self {
+            point,
+            error,
+            area: normal.length(d) * d.lit(0.5),
+            geometric_normal,
+            frame,
+            front,
+            cos_geometric: d.abs(cos_outward),
+            uv,
+            color,
+            alpha,
+            params: place.triangle.params,
+            light: place.triangle.light,
+            object: place.triangle.object,
+            inputs: [Vec3::splat(zero); MAX_INPUTS],
+        }
+    }
+
+    /// Where the ray `from` → triangle `prim` at barycentric (u, v) would arrive: light sampling's view of a light.
+    #[inline(always)]
+    pub fn seen_from(
+        d: D,
+        attributes: Attributes,
+        prim: D::U,
+        [u, v]: [D::F; 2],
+        from: Vec3<D::F>,
+    ) -> Self {
+        let place = Place::new(d, &Hit { u, v, prim });
+        Self::at(d, attributes, &place, prim, place.point - from)
+    }
+
+    /// Replaces the shading normal, given in the shading frame (a normal map's value).
+    #[inline(always)]
+    pub fn with_normal(mut self, d: D, local: Vec3<D::F>, wo: Vec3<D::F>) -> Self {
+        self.frame = shading_frame::with_normal(d, &self.frame, local, wo);
+        self
+    }
+
+    /// Where a ray that leaves in direction `dir` starts.
+    #[inline(always)]
+    pub fn spawn(&self, d: D, dir: Vec3<D::F>) -> Vec3<D::F> {
+        offset_point(d, self.point, self.error, self.geometric_normal, dir)
+    }
+}

@@ -1,0 +1,54 @@
+//! Shading frames: around interpolated and mapped normals, along tangents.
+
+use crate::domain::{Bundle, Domain};
+use crate::math::{Frame, Vec3};
+
+/// A shading normal from which the way back `wo` can be seen: one that `wo` lies below is tilted until it does
+/// not, so that interpolated and mapped normals make no black rims (hard cases M-09, O-07).
+#[inline(always)]
+pub(super) fn visible<D: Domain>(d: D, normal: Vec3<D::F>, wo: Vec3<D::F>) -> Vec3<D::F> {
+    let lift = d.max(d.lit(1e-3) - normal.dot(d, wo), d.lit(0.0));
+    (normal + wo.scale(lift)).normalize_any(d)
+}
+
+/// The frame around `normal` along `tangent`; the bitangent has the side of `sign`. Where the tangent vanishes the frame is
+/// the one around the normal.
+#[inline(always)]
+pub(super) fn along_tangent<D: Domain>(
+    d: D,
+    normal: Vec3<D::F>,
+    tangent: Vec3<D::F>,
+    sign: D::F,
+) -> Frame<D::F> {
+    let around = Frame::around(d, normal);
+    // Gram–Schmidt.
+    let tangent = tangent - normal.scale(tangent.dot(d, normal));
+    let length = tangent.length(d);
+    let usable = d.lt(d.lit(1e-6), length);
+    let tangent = tangent.scale(d.lit(1.0) / d.max(length, d.lit(1e-6)));
+    let bitangent = normal.cross(tangent).scale(sign);
+    Frame {
+        tangent: Vec3::choose(d, usable, tangent, around.tangent),
+        bitangent: Vec3::choose(d, usable, bitangent, around.bitangent),
+        normal,
+    }
+}
+
+/// The frame with a normal that is given in `frame` (a normal map's value), as visible from `wo`.
+#[inline(always)]
+pub(super) fn with_normal<D: Domain>(
+    d: D,
+    frame: &Frame<D::F>,
+    local: Vec3<D::F>,
+    wo: Vec3<D::F>,
+) -> Frame<D::F> {
+    let normal = visible(d, frame.to_world(local).normalize_any(d), wo);
+    let tangent = frame.tangent - normal.scale(frame.tangent.dot(d, normal));
+    let tangent = tangent.normalize_any(d);
+    let handed = frame.normal.cross(frame.tangent).dot(d, frame.bitangent);
+    Frame {
+        tangent,
+        bitangent: normal.cross(tangent).scale(d.copysign(d.lit(1.0), handed)),
+        normal,
+    }
+}
