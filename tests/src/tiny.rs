@@ -215,8 +215,8 @@ fn surfaces() -> Vec<Tiny> {
             ),
         ),
         Tiny::new(
-            "glossy_coat",
-            &[Effect::GlossyCoat],
+            "dielectric_coat",
+            &[Effect::DielectricCoat],
             &[],
             scene(
                 surface("varnish", metallic_roughness([0.5, 0.3, 0.2], 0.0, 0.3)),
@@ -226,7 +226,7 @@ fn surfaces() -> Vec<Tiny> {
         Tiny::new(
             "mixed_metal",
             &[
-                Effect::GlossyCoat,
+                Effect::DielectricCoat,
                 Effect::MetallicReflection,
                 Effect::MixedLobes,
             ],
@@ -329,7 +329,11 @@ fn textures() -> Vec<Tiny> {
         ),
         Tiny::new(
             "linear_texels",
-            &[&TEXTURE[..], &[Effect::LinearTexels, Effect::GlossyCoat]].concat(),
+            &[
+                &TEXTURE[..],
+                &[Effect::LinearTexels, Effect::DielectricCoat],
+            ]
+            .concat(),
             &[],
             textured(false, REPEAT, linear, |texture| {
                 surface(
@@ -532,7 +536,7 @@ fn views() -> Vec<Tiny> {
             orthographic,
         ),
         plain_options(
-            Tiny::new("constants", &[Effect::GlossyCoat], &[], constants),
+            Tiny::new("constants", &[Effect::DielectricCoat], &[], constants),
             |options| options.binding = Binding::Constants,
         ),
         plain_options(

@@ -249,7 +249,7 @@ fn triangles_find_their_own_vertices() {
                     );
                 }
             }
-            assert_eq!(plan.data.lets_through[triangle], of == BLENDED);
+            assert_eq!(plan.data.alpha_tested[triangle], of == BLENDED);
             assert_eq!(plan.data.single_sided[triangle], of == SINGLE_SIDED);
             triangle += 1;
         }

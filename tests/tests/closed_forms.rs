@@ -5,12 +5,13 @@ use std::ops::ControlFlow;
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView};
 use residual_render::alias_table::AliasEntry;
-use residual_render::camera::{AnyCamera, CameraRecord};
+use residual_render::camera::CameraRecord;
 use residual_render::film::Film;
 use residual_render::layer::Layers;
 use residual_render::light::{AreaRecord, push_light, set_picks};
 use residual_render::program::{
-    BsdfNode, ColorNode, EmissionNode, InputNode, LightNode, Program, SourceNode, Structure,
+    BsdfNode, CameraNode, ColorNode, EmissionNode, InputNode, LightNode, Program, SourceNode,
+    Structure,
 };
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
@@ -37,7 +38,7 @@ fn diffuse(albedo: f32, emission: f32) -> Program {
         normal: None,
         emission: (emission > 0.0).then_some(emits),
         bsdf: BsdfNode::Diffuse { albedo: Input(0) },
-        alpha: None,
+        alpha_test: None,
     }
 }
 
@@ -88,7 +89,7 @@ fn scene(
         } else {
             vec![area]
         },
-        camera: AnyCamera::Perspective,
+        camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::Path,
         layers: Layers::NONE,

@@ -227,7 +227,7 @@ fn cases() -> Vec<Case> {
                 })
             },
             dismissed: ONE_NUMBER,
-            out: &[Effect::Textures, Effect::GlossyCoat],
+            out: &[Effect::Textures, Effect::DielectricCoat],
             becomes: None,
         },
         Case {

@@ -22,7 +22,7 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("Nearest", &[Effect::NearestFilter]),
     ("Bilinear", &[Effect::BilinearFilter]),
     ("Repeat", &[Effect::RepeatWrap]),
-    ("Mirror", &[Effect::MirrorWrap]),
+    ("MirroredRepeat", &[Effect::MirrorWrap]),
     ("Clamp", &[Effect::ClampWrap]),
     ("SrgbRgba8", &[Effect::SrgbTexels]),
     ("LinearRgba8", &[Effect::LinearTexels]),
@@ -32,11 +32,14 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("VertexColor", &[Effect::VertexColors]),
     ("normals: true", &[Effect::SmoothNormals]),
     ("decode_normal", &[Effect::NormalMaps]),
-    ("has_alpha", &[Effect::AlphaMasks, Effect::AlphaBlending]),
-    ("is_there", &[Effect::AlphaMasks, Effect::AlphaBlending]),
-    ("AlphaTest::Mask", &[Effect::AlphaMasks]),
-    ("Blend", &[Effect::AlphaBlending]),
-    ("Glossy {", &[Effect::GlossyCoat]),
+    (
+        "has_alpha_tests",
+        &[Effect::AlphaMasks, Effect::AlphaBlending],
+    ),
+    ("alpha_test(", &[Effect::AlphaMasks, Effect::AlphaBlending]),
+    ("AlphaMask {", &[Effect::AlphaMasks]),
+    ("AlphaBlend {", &[Effect::AlphaBlending]),
+    ("CoatedDiffuse {", &[Effect::DielectricCoat]),
     ("Conductor {", &[Effect::MetallicReflection]),
     ("Phong {", &[Effect::PhongReflection]),
     (
@@ -71,10 +74,13 @@ const SOURCES: &[(&str, &[Effect])] = &[
         "render/src/alpha.rs",
         &[Effect::AlphaMasks, Effect::AlphaBlending],
     ),
-    ("render/src/bsdf/glossy.rs", &[Effect::GlossyCoat]),
+    (
+        "render/src/bsdf/coated_diffuse.rs",
+        &[Effect::DielectricCoat],
+    ),
     (
         "render/src/bsdf/microfacet.rs",
-        &[Effect::GlossyCoat, Effect::MetallicReflection],
+        &[Effect::DielectricCoat, Effect::MetallicReflection],
     ),
     ("render/src/bsdf/phong.rs", &[Effect::PhongReflection]),
     ("render/src/bsdf/combine.rs", &[Effect::MixedLobes]),
@@ -168,10 +174,10 @@ fn texts_contain_what_scenes_call_for_and_nothing_else() {
 #[test]
 fn renderers_contain_what_scenes_call_for() {
     for (name, functions) in [
-        ("alpha_mask", &["texture::image", "is_there"][..]),
+        ("alpha_mask", &["texture::image", "alpha_test"][..]),
         ("diffuse_and_phong", &["bsdf::phong", "bsdf::combine"]),
         ("environment", &["light::environment"]),
-        ("mixed_metal", &["bsdf::microfacet", "bsdf::glossy"]),
+        ("mixed_metal", &["bsdf::microfacet", "bsdf::coated_diffuse"]),
         ("solid_glass", &["bsdf::dielectric"]),
     ] {
         let tiny = tiny::all().into_iter().find(|tiny| tiny.name == name);
@@ -188,12 +194,12 @@ fn renderers_contain_what_scenes_call_for() {
 /// is neither among [`SOURCES`] nor [`COMMON`].
 const NOT_IN_CORNELL: &[&str] = &[
     "texture::image",
-    "is_there",
+    "alpha_test",
     "light::environment",
     "light::punctual",
     "bsdf::dielectric",
     "bsdf::microfacet",
-    "bsdf::glossy",
+    "bsdf::coated_diffuse",
     "bsdf::phong",
     "bsdf::combine",
     "decode_normal",

@@ -206,7 +206,7 @@ const PLACES: &[(Effect, Place)] = &[
         surface.transmission = number(factor, texture);
         material("transmission", SurfaceDesc::MetallicRoughness(surface))
     }),
-    (Effect::GlossyCoat, |factor, texture| {
+    (Effect::DielectricCoat, |factor, texture| {
         let mut surface = metallic_roughness([0.5; 3], 0.0, 0.5);
         surface.specular = number(factor, texture);
         material("specular", SurfaceDesc::MetallicRoughness(surface))

@@ -19,6 +19,7 @@ macro_rules! goldens {
     ($($name:ident)*) => {
         #[path = "../golden"]
         #[allow(dead_code, unreachable_pub, reason = "they are emitted for any use")]
+        #[deny(unused_imports, reason = "what a scene does not need is not imported")]
         mod golden {
             $(pub mod $name;)*
         }
@@ -42,7 +43,7 @@ goldens! {
     emission
     environment
     float_texels
-    glossy_coat
+    dielectric_coat
     independent_sampler
     linear_texels
     matte

@@ -200,7 +200,12 @@ fn texture_settings() {
 #[test]
 fn textures_have_alpha_and_single_sides() {
     let plan = planned(&fixtures::textures(), Binding::Structure);
-    assert!(plan.structure.programs.iter().any(|p| p.alpha.is_some()));
+    assert!(
+        plan.structure
+            .programs
+            .iter()
+            .any(|p| p.alpha_test.is_some())
+    );
     assert!(plan.data.single_sided.contains(&true) && plan.data.single_sided.contains(&false));
     assert!(plan.data.triangle_count() <= Parts::MOST);
 }

@@ -33,7 +33,7 @@ pub(super) fn run(args: &RenderBenchArgs) -> Result<()> {
             .structure
             .programs
             .iter()
-            .any(|program| program.alpha.is_some());
+            .any(|program| program.alpha_test.is_some());
         if has_alpha && embree.is_some() {
             eprintln!(
                 "{}: it has alpha, which Embree is measured without",

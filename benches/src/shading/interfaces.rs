@@ -1,10 +1,10 @@
-//! Which interface's specialisation is worth what (thesis, Figure 3.5): a textured glossy coat whose textures, and whose
+//! Which interface's specialisation is worth what (thesis, Figure 3.5): a textured dielectric coat whose textures, and whose
 //! vertex attributes, are known to the compiler or not.
 
 use std::hint::black_box;
 
 use residual_device_cpu::{Counters, LaneCount, SceneView, TileJob, TileRenderer, render_lanes};
-use residual_render::bsdf::{Bsdf, Glossy};
+use residual_render::bsdf::{Bsdf, CoatedDiffuse};
 use residual_render::camera::Perspective;
 use residual_render::domain::Domain;
 use residual_render::layer::Layers;
@@ -143,7 +143,7 @@ where
     {
         Shading {
             emission: None,
-            bsdf: Glossy {
+            bsdf: CoatedDiffuse {
                 albedo: Bound(self.albedo.color(d, surface)),
                 roughness: Bound(self.roughness.scalar(d, surface)),
                 reflectance: Bound(self.reflectance.color(d, surface)),
@@ -272,7 +272,7 @@ pub(super) struct CasesRenderer {
 impl CasesRenderer {
     pub(super) fn new(lanes: LaneCount) -> Self {
         Self {
-            nodes: Nodes::of(&Kind::Glossy.program(Inputs::Textures).0),
+            nodes: Nodes::of(&Kind::CoatedDiffuse.program(Inputs::Textures).0),
             lanes,
         }
     }

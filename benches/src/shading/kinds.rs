@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use residual_render::bsdf::AnyInterface;
 use residual_render::program::{
     BsdfNode, ColorNode, ImageNode, InputNode, Program, ScalarNode, SourceNode,
 };
@@ -17,13 +18,13 @@ pub enum Kind {
     /// A diffuse base, and this many Phong lobes added to it (thesis, Figure 3.4).
     Phong(usize),
     /// A diffuse base under a coat.
-    Glossy,
+    CoatedDiffuse,
     /// A rough conductor.
     Metal,
     /// Smooth glass.
     Dielectric,
     /// A metal and a coated base, mixed: glTF's metallic-roughness.
-    MetalAndGlossy,
+    MetalAndCoat,
 }
 
 /// Where a program's colours, roughness and weights come from.
@@ -42,10 +43,10 @@ impl Kind {
         Self::Phong(1),
         Self::Phong(2),
         Self::Phong(3),
-        Self::Glossy,
+        Self::CoatedDiffuse,
         Self::Metal,
         Self::Dielectric,
-        Self::MetalAndGlossy,
+        Self::MetalAndCoat,
     ];
 
     /// The program, and its parameters.
@@ -66,7 +67,7 @@ impl Kind {
             normal: None,
             emission: None,
             bsdf,
-            alpha: None,
+            alpha_test: None,
         };
         (program, builder.params)
     }
@@ -79,10 +80,10 @@ impl fmt::Display for Kind {
             Self::Phong(1) => "diffuse + 1 Phong",
             Self::Phong(2) => "diffuse + 2 Phong",
             Self::Phong(_) => "diffuse + 3 Phong",
-            Self::Glossy => "glossy coat",
+            Self::CoatedDiffuse => "dielectric coat",
             Self::Metal => "metal",
             Self::Dielectric => "dielectric",
-            Self::MetalAndGlossy => "metal and glossy",
+            Self::MetalAndCoat => "metal and coat",
         })
     }
 }
@@ -117,7 +118,7 @@ impl Builder {
                 }
                 sum
             }
-            Kind::Glossy => {
+            Kind::CoatedDiffuse => {
                 let albedo = self.color("albedo", 0.7);
                 let roughness = self.number("roughness", 0.4, 1);
                 self.coat(albedo, roughness)
@@ -129,9 +130,9 @@ impl Builder {
             Kind::Dielectric => BsdfNode::Dielectric {
                 transmittance: self.color("transmittance", 0.7),
                 ior: self.parameter("ior", 1.5),
-                solid: true,
+                interface: AnyInterface::Solid,
             },
-            Kind::MetalAndGlossy => {
+            Kind::MetalAndCoat => {
                 let color = self.color("albedo", 0.7);
                 let roughness = self.number("roughness", 0.4, 1);
                 BsdfNode::Mix {
@@ -145,7 +146,7 @@ impl Builder {
 
     fn coat(&mut self, albedo: Input, roughness: Input) -> BsdfNode {
         let reflectance = self.record(gray(0.04));
-        BsdfNode::Glossy {
+        BsdfNode::CoatedDiffuse {
             albedo,
             roughness,
             reflectance: self.input(

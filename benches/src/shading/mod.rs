@@ -16,9 +16,8 @@ use std::time::Instant;
 
 use residual_device_cpu::{Interpreter, LaneCount, SceneView, TileJob, TileRenderer};
 use residual_metrics::Estimate;
-use residual_render::camera::AnyCamera;
 use residual_render::layer::Layers;
-use residual_render::program::{LightNode, Structure};
+use residual_render::program::{CameraNode, LightNode, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
 use residual_render::tracer::{TracerNode, TracerOptions};
@@ -58,7 +57,7 @@ pub fn plan() -> Plan {
         structure: Structure {
             programs: nodes,
             lights: vec![LightNode::Point],
-            camera: AnyCamera::Perspective,
+            camera: CameraNode::Perspective,
             sampler: AnySampler::Sobol,
             tracer: TracerNode::Path,
             layers: Layers::NONE,
@@ -127,7 +126,7 @@ pub fn shading(
             cases: CasesRenderer::new(lanes),
         })
         .collect();
-    let coat = Kind::Glossy.program(Inputs::Textures).1;
+    let coat = Kind::CoatedDiffuse.program(Inputs::Textures).1;
     let coats = stream::data(&Known::ALL.map(|_| coat.clone()));
     let mut contenders = Vec::new();
     for renderers in &renderers {

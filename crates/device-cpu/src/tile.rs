@@ -45,8 +45,8 @@ where
 {
     let lights = scene.lights();
     let tracer = scene.tracer(Settings::new(d, &job.tracer));
-    let covers = |ray: &Ray, hit: &Hit| scene.covers(ray, hit);
-    let alpha: Option<&Alpha<'_>> = if scene.has_alpha() {
+    let covers = |ray: &Ray, hit: &Hit| scene.alpha_test(ray, hit);
+    let alpha: Option<&Alpha<'_>> = if scene.has_alpha_tests() {
         Some(&covers)
     } else {
         None

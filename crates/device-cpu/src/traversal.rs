@@ -85,7 +85,7 @@ impl AnyBvh {
         Self {
             tree,
             sided,
-            lets_through: Marks::new(&data.lets_through),
+            lets_through: Marks::new(&data.alpha_tested),
         }
     }
 

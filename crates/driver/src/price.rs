@@ -13,8 +13,7 @@ use residual_device_cpu::{
 };
 use residual_frontend::{hierarchy_quality, process_time};
 use residual_metrics::{Estimate, Jackknifed, flip, relative_mse};
-use residual_render::alpha::AlphaTest;
-use residual_render::program::{AlphaNode, BsdfNode, LightNode, Program, ScalarNode};
+use residual_render::program::{AlphaTestNode, BsdfNode, LightNode, Program, ScalarNode};
 use residual_render::surface::Attributes;
 use residual_scenegen::ablation::{instead, without};
 use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
@@ -246,9 +245,8 @@ fn with_unused(effect: Effect, plan: &Plan) -> Option<Plan> {
             normal: None,
             emission: None,
             bsdf: BsdfNode::Black,
-            alpha: Some(AlphaNode {
+            alpha_test: Some(AlphaTestNode::AlphaBlend {
                 alpha: ScalarNode::Const(0.5),
-                test: AlphaTest::Blend,
                 attributes: Attributes::NONE,
             }),
         }),

@@ -1,4 +1,4 @@
-//! Alpha: whether a surface is there at all. Asked by traversal, one hit at a time, where a scene has alpha.
+//! Alpha tests: whether a surface is there at all. Traversal makes them, one hit at a time, where a scene has any.
 
 use residual_bvh::{Hit, Ray};
 
@@ -9,56 +9,69 @@ use crate::sampler::{hash, unit};
 use crate::surface::{self, Attributes, Surface};
 use crate::texture::ScalarSource;
 
-/// What alpha is compared with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AlphaTest<C> {
-    /// There where alpha ≥ this cutoff.
-    Mask(C),
-    /// There with probability alpha. The decision is a hash of ray and triangle, so that every traversal of the
-    /// same ray decides alike.
-    Blend,
+/// A test of alpha.
+pub trait AlphaTest<D: Domain> {
+    /// Whether the surface is there for this hit of the ray, given by origin and direction. A pure function of both, so
+    /// that every traversal of the same ray decides alike.
+    fn passes(&self, d: D, ray: [Vec3<D::F>; 2], hit: &surface::Hit<D>) -> D::M;
 }
 
-/// Whether the surface is there for this hit of the ray from `org` in direction `dir`.
-#[inline(always)]
-pub fn covers<D: Domain, A: ScalarSource<D>, C: ScalarSource<D>>(
-    d: D,
-    attributes: Attributes,
-    alpha: &A,
-    test: &AlphaTest<C>,
-    [org, dir]: [Vec3<D::F>; 2],
-    hit: &surface::Hit<D>,
-) -> D::M {
-    let surface = Surface::new(d, attributes, hit, dir);
-    let alpha = alpha.scalar(d, &surface);
-    match test {
-        AlphaTest::Mask(cutoff) => d.le(cutoff.scalar(d, &surface), alpha),
-        AlphaTest::Blend => {
-            let [o, p, q] = [org.x, org.y, org.z].map(|c| d.to_bits(c));
-            let [x, y, z] = [dir.x, dir.y, dir.z].map(|c| d.to_bits(c));
-            let key = [o, p, q, x, y, z, hit.prim]
-                .into_iter()
-                .fold(d.uint(0), |key, bits| hash(d, key ^ bits));
-            d.lt(unit(d, key), alpha)
-        }
+/// There where alpha is at least a cutoff.
+#[derive(Clone, Copy, Debug)]
+pub struct AlphaMask<A, C> {
+    /// Alpha.
+    pub alpha: A,
+    /// The cutoff.
+    pub cutoff: C,
+    /// What the two read.
+    pub attributes: Attributes,
+}
+
+/// There with probability alpha. The decision is a hash of ray and triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct AlphaBlend<A> {
+    /// Alpha.
+    pub alpha: A,
+    /// What it reads.
+    pub attributes: Attributes,
+}
+
+impl<D: Domain, A: ScalarSource<D>, C: ScalarSource<D>> AlphaTest<D> for AlphaMask<A, C> {
+    #[inline(always)]
+    fn passes(&self, d: D, [_, dir]: [Vec3<D::F>; 2], hit: &surface::Hit<D>) -> D::M {
+        let surface = Surface::new(d, self.attributes, hit, dir);
+        let alpha = self.alpha.scalar(d, &surface);
+        d.le(self.cutoff.scalar(d, &surface), alpha)
     }
 }
 
-/// Whether the surface is there for this hit of this ray.
+impl<D: Domain, A: ScalarSource<D>> AlphaTest<D> for AlphaBlend<A> {
+    #[inline(always)]
+    fn passes(&self, d: D, [org, dir]: [Vec3<D::F>; 2], hit: &surface::Hit<D>) -> D::M {
+        let surface = Surface::new(d, self.attributes, hit, dir);
+        let alpha = self.alpha.scalar(d, &surface);
+        let [o, p, q] = [org.x, org.y, org.z].map(|c| d.to_bits(c));
+        let [x, y, z] = [dir.x, dir.y, dir.z].map(|c| d.to_bits(c));
+        let key = [o, p, q, x, y, z, hit.prim]
+            .into_iter()
+            .fold(d.uint(0), |key, bits| hash(d, key ^ bits));
+        d.lt(unit(d, key), alpha)
+    }
+}
+
+/// Makes the test for this hit of this ray.
 #[inline(always)]
-pub fn is_there<'a, A: ScalarSource<Scalar<'a>>, C: ScalarSource<Scalar<'a>>>(
+pub fn alpha_test<'a, T: AlphaTest<Scalar<'a>>>(
     buffers: &'a Buffers<'a>,
-    attributes: Attributes,
-    alpha: &A,
-    test: &AlphaTest<C>,
+    test: &T,
     ray: &Ray,
     hit: &Hit,
 ) -> bool {
-    let place = surface::Hit {
+    let hit = surface::Hit {
         u: hit.u,
         v: hit.v,
         prim: Uint(hit.prim),
     };
     let ray = [ray.org, ray.dir].map(|[x, y, z]| vec3(x, y, z));
-    covers(Scalar::new(buffers), attributes, alpha, test, ray, &place)
+    test.passes(Scalar::new(buffers), ray, &hit)
 }

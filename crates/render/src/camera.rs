@@ -81,22 +81,3 @@ pub fn set_aspect(data: &mut SceneData, aspect: f32) {
         }
     });
 }
-
-/// A camera chosen at run time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum AnyCamera {
-    /// [`Perspective`].
-    Perspective,
-    /// [`Orthographic`].
-    Orthographic,
-}
-
-impl<D: Domain> Camera<D> for AnyCamera {
-    #[inline(always)]
-    fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
-        match self {
-            Self::Perspective => Perspective.ray(d, film),
-            Self::Orthographic => Orthographic.ray(d, film),
-        }
-    }
-}

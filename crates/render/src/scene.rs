@@ -33,12 +33,12 @@ pub trait Scene<D: Domain>: Sync {
     fn lights(&self) -> &Self::Lights;
     /// How many material programs there are.
     fn programs(&self) -> usize;
-    /// Whether any surface lets rays through: whether [`covers`](Scene::covers) is ever false.
-    fn has_alpha(&self) -> bool {
+    /// Whether any surface has an alpha test: whether [`alpha_test`](Scene::alpha_test) is ever false.
+    fn has_alpha_tests(&self) -> bool {
         false
     }
     /// Whether the surface is there for this hit of this ray: a pure function of both.
-    fn covers(&self, _ray: &Ray, _hit: &Hit) -> bool {
+    fn alpha_test(&self, _ray: &Ray, _hit: &Hit) -> bool {
         true
     }
     /// Runs `visitor` with program number `program`.

@@ -10,8 +10,8 @@ pub struct SceneData {
     buffers: [Vec<u32>; Buffer::COUNT],
     /// For each triangle: culled from behind. Empty where no triangle is.
     pub single_sided: Vec<bool>,
-    /// For each triangle: its program has alpha, so that it may let rays through. Empty where no triangle does.
-    pub lets_through: Vec<bool>,
+    /// For each triangle: its program has an alpha test. Empty where no triangle has.
+    pub alpha_tested: Vec<bool>,
 }
 
 impl SceneData {

@@ -27,7 +27,7 @@ impl SceneData {
             bytes.extend((words.len() as u64).to_le_bytes());
             bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
         }
-        for marks in [&self.single_sided, &self.lets_through] {
+        for marks in [&self.single_sided, &self.alpha_tested] {
             bytes.extend((marks.len() as u64).to_le_bytes());
             bytes.extend(marks.iter().map(|&mark| u8::from(mark)));
         }
@@ -49,7 +49,7 @@ impl SceneData {
             let words = words.iter().map(|&word| u32::from_le_bytes(word));
             *data.buffer_mut(buffer) = words.collect();
         }
-        for marks in [&mut data.single_sided, &mut data.lets_through] {
+        for marks in [&mut data.single_sided, &mut data.alpha_tested] {
             *marks = part(&mut bytes, 1)?.iter().map(|&mark| mark != 0).collect();
         }
         if bytes.is_empty() {
@@ -86,7 +86,7 @@ mod tests {
             ..TriangleRecord::new(corners)
         };
         data.push_triangle(triangle, 5);
-        data.lets_through = vec![true];
+        data.alpha_tested = vec![true];
         let bytes = data.to_bytes();
         let read = SceneData::from_bytes(&bytes).unwrap();
         assert!(
@@ -94,7 +94,7 @@ mod tests {
                 .iter()
                 .all(|&b| read.buffer(b) == data.buffer(b))
         );
-        assert_eq!(read.lets_through, [true]);
+        assert_eq!(read.alpha_tested, [true]);
         assert!(read.single_sided.is_empty());
         for length in 0..bytes.len() {
             assert!(SceneData::from_bytes(&bytes[..length]).is_err(), "{length}");

@@ -2,7 +2,7 @@
 //! Denoise asks for where it is not.
 
 use residual_render::bsdf::{
-    Black, Bsdf, Conductor, Dielectric, Diffuse, Glossy, Mix, Phong, Solid, Sum, Thin,
+    Black, Bsdf, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mix, Phong, Solid, Sum, Thin,
 };
 use residual_render::domain::Precise;
 use residual_render::math::Vec3;
@@ -140,7 +140,7 @@ fn metals_have_the_colour_of_their_reflection() {
 
 #[test]
 fn coats_show_their_base_until_they_are_grazed() {
-    let coated = Glossy {
+    let coated = CoatedDiffuse {
         albedo: BLUE,
         roughness: Const(0.5),
         reflectance: Const([0.04; 3]),
@@ -157,8 +157,16 @@ fn coats_show_their_base_until_they_are_grazed() {
 /// 1 where light is reflected, the tint where it goes through, and what of each the Fresnel factor says.
 #[test]
 fn dielectrics_have_their_tint_and_their_reflection() {
-    let thin = Dielectric::new(ORANGE, Const(1.5), Thin);
-    let clear = Dielectric::new(Const([1.0; 3]), Const(1.5), Solid);
+    let thin = Dielectric {
+        transmittance: ORANGE,
+        ior: Const(1.5),
+        interface: Thin,
+    };
+    let clear = Dielectric {
+        transmittance: Const([1.0; 3]),
+        ior: Const(1.5),
+        interface: Solid,
+    };
     for cos in COSINES {
         assert_near("thin", albedo(&thin, cos), mean_weight(&thin, cos), 1e-3);
         assert_near("clear", albedo(&clear, cos), [1.0; 3], 1e-12);
@@ -168,7 +176,11 @@ fn dielectrics_have_their_tint_and_their_reflection() {
     let buffers = data.buffers();
     let d = Precise::new(&buffers);
     let inside = surface_at(d, 0, [0.3, 0.3], [0.0, 0.0, 1.0]);
-    let solid = Dielectric::new(ORANGE, Const(1.5), Solid);
+    let solid = Dielectric {
+        transmittance: ORANGE,
+        ior: Const(1.5),
+        interface: Solid,
+    };
     let Vec3 { x, y, z } = solid.albedo(d, &inside, view(0.5));
     assert_near("total reflection", [x, y, z], [1.0; 3], 1e-12);
 }
@@ -193,7 +205,11 @@ fn albedos_are_between_0_and_1() {
         };
         check("diffuse", &diffuse);
         check("phong", &phong);
-        let glass = Dielectric::new(color, Const(1.5), Solid);
+        let glass = Dielectric {
+            transmittance: color,
+            ior: Const(1.5),
+            interface: Solid,
+        };
         check("dielectric", &glass);
         for number in [0.0, 0.3, 1.0].map(Const) {
             let conductor = Conductor {
@@ -201,7 +217,7 @@ fn albedos_are_between_0_and_1() {
                 roughness: number,
             };
             check("conductor", &conductor);
-            let coated = Glossy {
+            let coated = CoatedDiffuse {
                 albedo: color,
                 roughness: Const(0.2),
                 reflectance: Const([0.04; 3]),

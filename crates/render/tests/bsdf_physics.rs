@@ -2,7 +2,8 @@
 //! be anything but finite (M-15). And what smooth dielectrics do.
 
 use residual_render::bsdf::{
-    Black, Bsdf, BsdfSample, Conductor, Dielectric, Diffuse, Glossy, Mix, Phong, Solid, Sum, Thin,
+    Black, Bsdf, BsdfSample, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mix, Phong, Solid, Sum,
+    Thin,
 };
 use residual_render::domain::{Buffers, Scalar};
 use residual_render::math::Vec3;
@@ -18,8 +19,8 @@ use crate::support::{Worst, array, dot};
 type White = Const<[f32; 3]>;
 const WHITE: White = Const([1.0; 3]);
 
-fn glossy(roughness: f32, reflectance: f32) -> Glossy<White, Const<f32>, White, Const<f32>> {
-    Glossy {
+fn coated(roughness: f32, reflectance: f32) -> CoatedDiffuse<White, Const<f32>, White, Const<f32>> {
+    CoatedDiffuse {
         albedo: WHITE,
         roughness: Const(roughness),
         reflectance: Const([reflectance; 3]),
@@ -117,9 +118,9 @@ fn furnace_of_metals() {
 fn furnace_of_coated_surfaces() {
     for roughness in ROUGHNESSES {
         for reflectance in [0.0, 0.04, 0.5, 1.0] {
-            for (cos, albedo) in albedos(&glossy(roughness, reflectance)) {
+            for (cos, albedo) in albedos(&coated(roughness, reflectance)) {
                 println!(
-                    "glossy {roughness}, F₀ {reflectance}, cos {cos}: {:.4}",
+                    "coated {roughness}, F₀ {reflectance}, cos {cos}: {:.4}",
                     albedo.value()
                 );
                 let bound = match cos {
@@ -130,7 +131,7 @@ fn furnace_of_coated_surfaces() {
                 };
                 assert!(
                     albedo.value() - 3.09 * albedo.error() <= bound,
-                    "glossy {roughness}, F₀ {reflectance}, cos {cos}: {:.4} above {bound}",
+                    "coated {roughness}, F₀ {reflectance}, cos {cos}: {:.4} above {bound}",
                     albedo.value()
                 );
             }
@@ -167,7 +168,11 @@ fn furnace_of_combinations() {
         "mix with glass",
         &Mix {
             a: base,
-            b: Dielectric::new(WHITE, Const(1.5), Thin),
+            b: Dielectric {
+                transmittance: WHITE,
+                ior: Const(1.5),
+                interface: Thin,
+            },
             weight: Const(0.4),
         },
     );
@@ -192,7 +197,11 @@ fn furnace_of_combinations() {
         },
     );
     // What mixes lose nothing: the estimator's mean does not depend on how lobes are chosen.
-    let glass = Dielectric::new(WHITE, Const(1.5), Thin);
+    let glass = Dielectric {
+        transmittance: WHITE,
+        ior: Const(1.5),
+        interface: Thin,
+    };
     for (_, albedo) in albedos(&Mix {
         a: base,
         b: glass,
@@ -274,7 +283,7 @@ fn reciprocity() {
             roughness: Const(roughness),
         };
         asymmetry(&format!("conductor {roughness}"), &gold);
-        asymmetry(&format!("glossy {roughness}"), &glossy(roughness, 0.04));
+        asymmetry(&format!("coated {roughness}"), &coated(roughness, 0.04));
     }
     for exponent in [1.0, 20.0, 100.0] {
         asymmetry(&format!("phong {exponent}"), &phong(exponent));
@@ -343,17 +352,35 @@ fn degenerate_directions_give_finite_values() {
     }
     for roughness in [0.0, 0.1, 1.0] {
         check("conductor", &conductor(roughness));
-        check("glossy", &glossy(roughness, 0.04));
+        check("coated", &coated(roughness, 0.04));
     }
     for exponent in [0.0, 1.0, 1e4] {
         check("phong", &phong(exponent));
     }
     check("diffuse", &Diffuse { albedo: WHITE });
-    check("solid", &Dielectric::new(WHITE, Const(1.5), Solid));
-    check("thin", &Dielectric::new(WHITE, Const(1.5), Thin));
+    check(
+        "solid",
+        &Dielectric {
+            transmittance: WHITE,
+            ior: Const(1.5),
+            interface: Solid,
+        },
+    );
+    check(
+        "thin",
+        &Dielectric {
+            transmittance: WHITE,
+            ior: Const(1.5),
+            interface: Thin,
+        },
+    );
     let mix = |weight| Mix {
         a: Diffuse { albedo: WHITE },
-        b: Dielectric::new(WHITE, Const(1.5), Solid),
+        b: Dielectric {
+            transmittance: WHITE,
+            ior: Const(1.5),
+            interface: Solid,
+        },
         weight: Const(weight),
     };
     [0.0, 0.3, 1.0]
@@ -397,7 +424,11 @@ fn dielectrics_conserve_energy_and_obey_snell() {
             rng.range(0.0, std::f64::consts::TAU),
         );
         let ior = rng.range(1.01, 2.5) as f32;
-        let glass = Dielectric::new(WHITE, Const(ior), Solid);
+        let glass = Dielectric {
+            transmittance: WHITE,
+            ior: Const(ior),
+            interface: Solid,
+        };
         for (surface, eta) in [(&front, f64::from(ior)), (&back, 1.0 / f64::from(ior))] {
             let place = || format!("{wo:?}, η {eta}");
             let exact = crate::support::unit(array(wo).map(f64::from));
@@ -431,7 +462,11 @@ fn dielectrics_conserve_energy_and_obey_snell() {
     share.assert_below(1e-6, "1/η² of transmitted radiance");
     for cos in [1.0, 0.5, 0.1] {
         let reflectance = lobes(
-            &Dielectric::new(WHITE, Const(1.5), Solid),
+            &Dielectric {
+                transmittance: WHITE,
+                ior: Const(1.5),
+                interface: Solid,
+            },
             &front,
             d,
             view(cos, 0.3),
@@ -447,7 +482,11 @@ fn thin_sheets_do_not_bend_and_have_no_inside() {
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
     let tint = Const([0.9, 0.5, 0.1]);
-    let sheet = Dielectric::new(tint, Const(1.5), Thin);
+    let sheet = Dielectric {
+        transmittance: tint,
+        ior: Const(1.5),
+        interface: Thin,
+    };
     let [front, back] = [-1.0, 1.0].map(|z| surface_at(d, 0, [0.3, 0.3], [0.0, 0.0, z]));
     assert!(front.front && !back.front);
     for cos in [0.9, 0.6, 0.2, 0.01] {
@@ -455,7 +494,11 @@ fn thin_sheets_do_not_bend_and_have_no_inside() {
         for surface in [&front, &back] {
             let through = sheet.sample(d, surface, wo, [0.1, 0.2, 1.0 - 1.0 / 16_777_216.0]);
             assert_eq!((through.wi, through.weight), (-wo, vec3(0.9, 0.5, 0.1)));
-            let solid = Dielectric::new(tint, Const(1.5), Solid);
+            let solid = Dielectric {
+                transmittance: tint,
+                ior: Const(1.5),
+                interface: Solid,
+            };
             let same = lobes(&sheet, surface, d, wo) == lobes(&solid, surface, d, wo);
             assert_eq!(
                 same, surface.front,

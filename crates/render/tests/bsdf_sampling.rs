@@ -1,7 +1,7 @@
 //! BSDF sampling against its own density: χ² in slopes of the half vector, so that every lobe is resolved
 //! (hard case M-02), weights against value ÷ density (M-03), and the mass of the density.
 
-use residual_render::bsdf::{Bsdf, Conductor, Diffuse, Glossy, Mix, Phong, Sum};
+use residual_render::bsdf::{Bsdf, CoatedDiffuse, Conductor, Diffuse, Mix, Phong, Sum};
 use residual_render::domain::{Buffers, Precise, Scalar};
 use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
@@ -236,8 +236,10 @@ fn conductor(roughness: f32) -> Conductor<Const<[f32; 3]>, Const<f32>> {
         roughness: Const(roughness),
     }
 }
-fn glossy(roughness: f32) -> Glossy<Const<[f32; 3]>, Const<f32>, Const<[f32; 3]>, Const<f32>> {
-    Glossy {
+fn coated(
+    roughness: f32,
+) -> CoatedDiffuse<Const<[f32; 3]>, Const<f32>, Const<[f32; 3]>, Const<f32>> {
+    CoatedDiffuse {
         albedo: BASE,
         roughness: Const(roughness),
         reflectance: Const([0.04; 3]),
@@ -280,14 +282,14 @@ fn conductors() {
 }
 
 #[test]
-fn glossies() {
+fn coated_diffuse() {
     let data = scene(&[FLOOR]);
     let mut family = Family::default();
     for roughness in [0.05, 0.2, 0.5, 1.0] {
-        let name = format!("glossy {roughness}");
+        let name = format!("coated {roughness}");
         Case {
             name,
-            bsdf: glossy(roughness),
+            bsdf: coated(roughness),
             scale: alpha(roughness),
             data: &data,
         }
@@ -352,7 +354,7 @@ fn combinations() {
     let nested = Mix {
         a: sum,
         b: Mix {
-            a: glossy(0.3),
+            a: coated(0.3),
             b: mix,
             weight: Const(0.5),
         },

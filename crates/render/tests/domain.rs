@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, dispatch};
 use residual_render::bsdf::{
-    Bsdf, Conductor, Dielectric, Diffuse, Glossy, Mix, Phong, Solid, Sum, Thin, fresnel,
+    Bsdf, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mix, Phong, Solid, Sum, Thin, fresnel,
 };
 use residual_render::domain::{
     Buffer, Domain, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, One, Scalar,
@@ -407,11 +407,11 @@ fn bsdfs_agree() {
         "diffuse" Diffuse { albedo: RED };
         "conductor" Conductor { color: RED, roughness: Const(0.3) };
         "smooth conductor" Conductor { color: RED, roughness: Const(0.0) };
-        "glossy" Glossy { albedo: RED, roughness: Const(0.2), reflectance: Const([0.04; 3]), grazing: Const(1.0) };
-        "solid" Dielectric::new(RED, Const(1.5), Solid);
-        "thin" Dielectric::new(RED, Const(1.33), Thin);
+        "coated" CoatedDiffuse { albedo: RED, roughness: Const(0.2), reflectance: Const([0.04; 3]), grazing: Const(1.0) };
+        "solid" Dielectric { transmittance: RED, ior: Const(1.5), interface: Solid };
+        "thin" Dielectric { transmittance: RED, ior: Const(1.33), interface: Thin };
         "phong" Phong { color: RED, exponent: Const(40.0) };
-        "mix" Mix { a: Diffuse { albedo: RED }, b: Dielectric::new(RED, Const(1.5), Solid), weight: Const(0.4) };
+        "mix" Mix { a: Diffuse { albedo: RED }, b: Dielectric { transmittance: RED, ior: Const(1.5), interface: Solid }, weight: Const(0.4) };
         "sum" Sum {
             a: Diffuse { albedo: RED },
             b: Mix { a: Phong { color: RED, exponent: Const(9.0) }, b: Conductor { color: RED, roughness: Const(0.6) }, weight: Const(0.3) },
@@ -514,7 +514,7 @@ fn textures_agree() {
     let moderate = reals(49, |r| {
         [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]
     });
-    for wrap in [AnyWrap::Repeat, AnyWrap::Mirror, AnyWrap::Clamp] {
+    for wrap in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
         for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
             for format in [
                 AnyFormat::SrgbRgba8,

@@ -3,9 +3,10 @@
 mod common;
 
 use common::{Formula, IMAGE, Random, TRANSFORM, TRIANGLES, Yield, count, ifs, loads, scene};
-use residual_render::alpha::AlphaTest;
+use residual_render::alpha::AlphaTest as _;
+use residual_render::bsdf::AnyInterface;
 use residual_render::bsdf::Bsdf;
-use residual_render::camera::{AnyCamera, Camera};
+use residual_render::camera::Camera;
 use residual_render::domain::tape::{Function, Outputs, Record, Tape};
 use residual_render::domain::{Buffer, Buffers, Bundle, Domain, Scalar, Uint};
 use residual_render::layer::{Layer, Layers};
@@ -14,8 +15,8 @@ use residual_render::material::Material;
 use residual_render::math::elementary;
 use residual_render::math::vec3::vec3;
 use residual_render::program::{
-    AlphaNode, BoxedAlpha, BoxedMaterial, BsdfNode, ColorNode, EmissionNode, ImageNode, InputNode,
-    Interpreted, LightNode, NormalNode, Program, ScalarNode, SourceNode, Structure,
+    AlphaTestNode, BoxedMaterial, BsdfNode, CameraNode, ColorNode, EmissionNode, ImageNode,
+    InputNode, Interpreted, LightNode, NormalNode, Program, ScalarNode, SourceNode, Structure,
 };
 use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene::Scene;
@@ -195,7 +196,7 @@ fn program(bsdf: BsdfNode, inputs: Vec<InputNode>) -> Program {
         normal: None,
         emission: None,
         bsdf,
-        alpha: None,
+        alpha_test: None,
     }
 }
 
@@ -226,16 +227,16 @@ fn bsdfs() -> Vec<BsdfNode> {
         color: second,
         roughness: third,
     };
-    let glossy = BsdfNode::Glossy {
+    let coated = BsdfNode::CoatedDiffuse {
         albedo: first,
         roughness: third,
         reflectance: second,
         grazing: fourth,
     };
-    let glass = |solid| BsdfNode::Dielectric {
+    let glass = |interface| BsdfNode::Dielectric {
         transmittance: first,
         ior: fourth,
-        solid,
+        interface,
     };
     let phong = BsdfNode::Phong {
         color: second,
@@ -255,15 +256,18 @@ fn bsdfs() -> Vec<BsdfNode> {
         BsdfNode::Black,
         diffuse.clone(),
         conductor.clone(),
-        glossy.clone(),
-        glass(true),
-        glass(false),
+        coated.clone(),
+        glass(AnyInterface::Solid),
+        glass(AnyInterface::Thin),
         phong.clone(),
-        mix(&glossy, &conductor),
-        mix(&glossy, &glass(false)),
-        mix(&glass(true), &glass(false)),
+        mix(&coated, &conductor),
+        mix(&coated, &glass(AnyInterface::Thin)),
+        mix(&glass(AnyInterface::Solid), &glass(AnyInterface::Thin)),
         sum(&diffuse, &phong),
-        mix(&sum(&diffuse, &phong), &mix(&glass(true), &glossy)),
+        mix(
+            &sum(&diffuse, &phong),
+            &mix(&glass(AnyInterface::Solid), &coated),
+        ),
     ]
 }
 
@@ -334,7 +338,7 @@ fn normal_maps_emission_and_vertex_attributes() {
         program.inputs[2] = scalar(
             "product",
             ScalarNode::Product(
-                Box::new(ScalarNode::VertexAlpha),
+                Box::new(ScalarNode::VertexColor),
                 Box::new(ScalarNode::Param(9)),
             ),
         );
@@ -352,7 +356,7 @@ fn normal_maps_emission_and_vertex_attributes() {
 
 /// Image number `k` of all combinations of wrapping, filter, format, coordinates and transform.
 fn image(k: usize) -> ImageNode {
-    let wraps = [AnyWrap::Repeat, AnyWrap::Mirror, AnyWrap::Clamp];
+    let wraps = [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp];
     let filters = [AnyFilter::Nearest, AnyFilter::Bilinear];
     let formats = [
         AnyFormat::SrgbRgba8,
@@ -409,7 +413,7 @@ fn image_textures() {
     }
 }
 
-struct Alpha(AlphaNode);
+struct Alpha(AlphaTestNode);
 
 impl Formula for Alpha {
     fn name(&self) -> String {
@@ -428,8 +432,7 @@ impl Formula for Alpha {
         };
         let ray = [vec3(r[5], r[6], r[7]), vec3(r[2], r[3], r[4])];
         let mut out = Yield::new();
-        out.truths
-            .push(BoxedAlpha::<D>::new(&self.0).covers(d, ray, &hit));
+        out.truths.push(self.0.boxed::<D>().passes(d, ray, &hit));
         out
     }
 }
@@ -441,17 +444,15 @@ fn alpha() {
         uv1: true,
         ..Attributes::default()
     };
-    for test in [
-        AlphaTest::Mask(ScalarNode::Const(0.5)),
-        AlphaTest::Mask(ScalarNode::Param(3)),
-        AlphaTest::Blend,
-    ] {
-        check(&Alpha(AlphaNode {
-            alpha: ScalarNode::Image(image(3)),
-            test,
+    let alpha = ScalarNode::Image(image(3));
+    for cutoff in [ScalarNode::Const(0.5), ScalarNode::Param(3)] {
+        check(&Alpha(AlphaTestNode::AlphaMask {
+            alpha: alpha.clone(),
+            cutoff,
             attributes,
         }));
     }
+    check(&Alpha(AlphaTestNode::AlphaBlend { alpha, attributes }));
 }
 
 // ---- lights, cameras, samplers ----
@@ -460,7 +461,7 @@ fn structure(lights: Vec<LightNode>) -> Structure {
     Structure {
         programs: vec![],
         lights,
-        camera: AnyCamera::Perspective,
+        camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::Path,
         layers: Layers::NONE,
@@ -551,7 +552,7 @@ fn all_lights_at_once() {
     assert_eq!(ifs(&function), 4, "a branch for each kind but the last");
 }
 
-struct CameraAndSampler(AnyCamera, AnySampler);
+struct CameraAndSampler(CameraNode, AnySampler);
 
 impl Formula for CameraAndSampler {
     fn name(&self) -> String {
@@ -574,6 +575,7 @@ impl Formula for CameraAndSampler {
             unreachable!()
         };
         let key = SampleKey::new(d, x, y, index, seed);
+        let camera = self.0.boxed::<D>();
         let mut out = Yield::new();
         out.reals.extend(self.1.pair(d, key, dimension));
         let tracer = PathTracer {
@@ -589,8 +591,8 @@ impl Formula for CameraAndSampler {
             pdf,
             key,
             depth,
-        } = tracer.on_emit(d, &self.0, [x, y], index);
-        let through = self.0.ray(d, [out.reals[0], out.reals[1]]);
+        } = tracer.on_emit(d, &camera, [x, y], index);
+        let through = camera.ray(d, [out.reals[0], out.reals[1]]);
         for ray in [ray, through] {
             out.vector(ray.org);
             out.vector(ray.dir);
@@ -605,9 +607,9 @@ impl Formula for CameraAndSampler {
 
 #[test]
 fn cameras_and_samplers() {
-    for camera in [AnyCamera::Perspective, AnyCamera::Orthographic] {
+    for camera in [CameraNode::Perspective, CameraNode::Orthographic] {
         for sampler in [AnySampler::Independent, AnySampler::Sobol] {
-            check(&CameraAndSampler(camera, sampler));
+            check(&CameraAndSampler(camera.clone(), sampler));
         }
     }
 }

@@ -68,7 +68,7 @@ const UV: UvMap = UvMap {
     set: 0,
     transform: None,
 };
-const WRAPS: [AnyWrap; 3] = [AnyWrap::Repeat, AnyWrap::Mirror, AnyWrap::Clamp];
+const WRAPS: [AnyWrap; 3] = [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp];
 
 /// A scene with one image of `f32` texels whose red is the texel's number plus one; all else is −1e9.
 fn numbered(width: u32, height: u32) -> SceneData {
@@ -117,7 +117,7 @@ fn sample(data: &SceneData, image: &AnyImage, uv: [f32; 2]) -> f32 {
 fn wrap(mode: AnyWrap, i: i64, size: i64) -> i64 {
     match mode {
         AnyWrap::Repeat => i.rem_euclid(size),
-        AnyWrap::Mirror => {
+        AnyWrap::MirroredRepeat => {
             let r = i.rem_euclid(2 * size);
             r.min(2 * size - 1 - r)
         }

@@ -13,7 +13,7 @@ use crate::plan::{CullingRule, PlanOptions};
 /// others stand for (a texel's format, a wrap mode).
 pub fn instead(effect: Effect) -> Option<&'static str> {
     Some(match effect {
-        Effect::GlossyCoat => "matte",
+        Effect::DielectricCoat => "matte",
         Effect::MetallicReflection => "matte, of the same colour",
         Effect::PhongReflection => "matte",
         Effect::ThinTransmission | Effect::Refraction => "opaque",
@@ -117,7 +117,7 @@ fn change(effect: Effect, material: &mut MaterialDesc, means: &mut Means) {
 /// Takes a lobe out of a surface.
 fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
     match (effect, &mut *surface) {
-        (Effect::GlossyCoat, SurfaceDesc::MetallicRoughness(surface)) => {
+        (Effect::DielectricCoat, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.specular = number(0.0);
         }
         // A metal's reflection is all there is of it: what stays is its colour, and no coat instead.

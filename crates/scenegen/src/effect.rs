@@ -25,7 +25,7 @@ macro_rules! effects {
 
 effects! {
     DiffuseReflection = "diffuse reflection",
-    GlossyCoat = "glossy coat",
+    DielectricCoat = "dielectric coat",
     MetallicReflection = "metallic reflection",
     PhongReflection = "Phong reflection",
     ThinTransmission = "thin transmission",

@@ -4,12 +4,11 @@
 
 use std::collections::BTreeMap;
 
-use residual_render::alpha::AlphaTest;
-use residual_render::camera::AnyCamera;
+use residual_render::bsdf::AnyInterface;
 use residual_render::program::{
-    BsdfNode, ColorNode, ImageNode, LightNode, Program, ScalarNode, SourceNode,
+    AlphaTestNode, BsdfNode, CameraNode, ImageNode, Leaf, LightNode, Program, Source, SourceNode,
 };
-use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap};
+use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, UvMap};
 
 use crate::plan::{MaterialUse, Plan};
 
@@ -37,11 +36,8 @@ impl Effects {
                 effects.add(light_effect(light), source);
             }
         }
-        let camera = match structure.camera {
-            AnyCamera::Perspective => Effect::PerspectiveCamera,
-            AnyCamera::Orthographic => Effect::OrthographicCamera,
-        };
-        effects.add(camera, &format!("camera {:?}", plan.camera_name));
+        let camera = format!("camera {:?}", plan.camera_name);
+        effects.add(camera_effect(&structure.camera), &camera);
         for dismissed in &plan.dismissed {
             if let Some(effect) = dismissed.effect {
                 let reasons = effects.dismissed.entry(effect).or_default();
@@ -91,108 +87,48 @@ impl Effects {
         }
         if let Some(emission) = program.emission {
             self.add(Effect::EmittingSurfaces, place);
-            if matches!(&program.inputs[emission.radiance.0].source, SourceNode::Color(node) if has_image(node))
-            {
+            if has_image(&program.inputs[emission.radiance.0].source) {
                 self.add(Effect::TexturedEmission, place);
             }
         }
-        if let Some(alpha) = &program.alpha {
-            self.add_scalar(&alpha.alpha, who);
-            self.add(
-                match alpha.test {
-                    AlphaTest::Mask(_) => Effect::AlphaMasks,
-                    AlphaTest::Blend => Effect::AlphaBlending,
-                },
-                place,
-            );
+        if let Some(test) = &program.alpha_test {
+            self.add(alpha_effect(test), place);
         }
-        for input in &program.inputs {
-            match &input.source {
-                SourceNode::Color(node) => self.add_color(node, who),
-                SourceNode::Scalar(node) => self.add_scalar(node, who),
+        for leaf in program.leaves() {
+            match leaf {
+                Leaf::Constant | Leaf::Parameter => {}
+                Leaf::VertexColor => self.add(Effect::VertexColors, place),
+                Leaf::Image(image) => self.add_image(image, who),
+                Leaf::Coordinates(uv) => self.add_coordinates(uv, place),
             }
         }
         self.add_bsdf(&program.bsdf, place);
     }
 
-    fn add_bsdf(&mut self, node: &BsdfNode, who: &str) {
-        let effect = match node {
-            BsdfNode::Black => return,
-            BsdfNode::Diffuse { .. } => Effect::DiffuseReflection,
-            BsdfNode::Conductor { .. } => Effect::MetallicReflection,
-            BsdfNode::Glossy { .. } => {
-                self.add(Effect::DiffuseReflection, who);
-                Effect::GlossyCoat
-            }
-            BsdfNode::Dielectric { solid: true, .. } => Effect::Refraction,
-            BsdfNode::Dielectric { solid: false, .. } => Effect::ThinTransmission,
-            BsdfNode::Phong { .. } => Effect::PhongReflection,
-            BsdfNode::Mix { a, b, .. } | BsdfNode::Sum { a, b, .. } => {
-                self.add_bsdf(a, who);
-                self.add_bsdf(b, who);
-                Effect::MixedLobes
-            }
-        };
-        self.add(effect, who);
-    }
-
-    fn add_color(&mut self, node: &ColorNode, who: &Caller<'_>) {
-        match node {
-            ColorNode::Const(_) | ColorNode::Param(_) => {}
-            ColorNode::VertexColor => self.add(Effect::VertexColors, &who.place),
-            ColorNode::Image(image) => self.add_image(image, who),
-            ColorNode::Gray(node) => self.add_scalar(node, who),
-            ColorNode::Product(a, b) => {
-                self.add_color(a, who);
-                self.add_color(b, who);
-            }
+    fn add_bsdf(&mut self, node: &BsdfNode, place: &str) {
+        for child in node.children() {
+            self.add_bsdf(child, place);
         }
-    }
-
-    fn add_scalar(&mut self, node: &ScalarNode, who: &Caller<'_>) {
-        match node {
-            ScalarNode::Const(_) | ScalarNode::Param(_) => {}
-            ScalarNode::VertexAlpha => self.add(Effect::VertexColors, &who.place),
-            ScalarNode::Image(image) => self.add_image(image, who),
-            ScalarNode::Product(a, b) => {
-                self.add_scalar(a, who);
-                self.add_scalar(b, who);
-            }
+        for effect in bsdf_effects(node) {
+            self.add(*effect, place);
         }
     }
 
     fn add_image(&mut self, image: &ImageNode, who: &Caller<'_>) {
-        let place = &who.place;
         self.add(Effect::Textures, &who.image(image));
         for wrap in [image.wrap.0, image.wrap.1] {
-            self.add(
-                match wrap {
-                    AnyWrap::Repeat => Effect::RepeatWrap,
-                    AnyWrap::Mirror => Effect::MirrorWrap,
-                    AnyWrap::Clamp => Effect::ClampWrap,
-                },
-                place,
-            );
+            self.add(wrap_effect(wrap), &who.place);
         }
-        self.add(
-            match image.filter {
-                AnyFilter::Nearest => Effect::NearestFilter,
-                AnyFilter::Bilinear => Effect::BilinearFilter,
-            },
-            place,
-        );
-        self.add(
-            match image.format {
-                AnyFormat::SrgbRgba8 => Effect::SrgbTexels,
-                AnyFormat::LinearRgba8 => Effect::LinearTexels,
-                AnyFormat::LinearFloat => Effect::FloatTexels,
-            },
-            place,
-        );
-        if image.uv.transform.is_some() {
+        self.add(filter_effect(image.filter), &who.place);
+        self.add(format_effect(image.format), &who.place);
+        self.add_coordinates(image.uv, &who.place);
+    }
+
+    fn add_coordinates(&mut self, uv: UvMap, place: &str) {
+        if uv.transform.is_some() {
             self.add(Effect::TextureTransforms, place);
         }
-        if image.uv.set == 1 {
+        if uv.set == 1 {
             self.add(Effect::SecondUvSet, place);
         }
     }
@@ -223,6 +159,52 @@ impl<'a> Caller<'a> {
     }
 }
 
+/// The effects of a BSDF itself, without those of the BSDFs that it combines.
+fn bsdf_effects(bsdf: &BsdfNode) -> &'static [Effect] {
+    match bsdf {
+        BsdfNode::Black => &[],
+        BsdfNode::Diffuse { .. } => &[Effect::DiffuseReflection],
+        BsdfNode::Conductor { .. } => &[Effect::MetallicReflection],
+        BsdfNode::CoatedDiffuse { .. } => &[Effect::DiffuseReflection, Effect::DielectricCoat],
+        BsdfNode::Dielectric { interface, .. } => match interface {
+            AnyInterface::Solid => &[Effect::Refraction],
+            AnyInterface::Thin => &[Effect::ThinTransmission],
+        },
+        BsdfNode::Phong { .. } => &[Effect::PhongReflection],
+        BsdfNode::Mix { .. } | BsdfNode::Sum { .. } => &[Effect::MixedLobes],
+    }
+}
+
+fn alpha_effect(test: &AlphaTestNode) -> Effect {
+    match test {
+        AlphaTestNode::AlphaMask { .. } => Effect::AlphaMasks,
+        AlphaTestNode::AlphaBlend { .. } => Effect::AlphaBlending,
+    }
+}
+
+fn wrap_effect(wrap: AnyWrap) -> Effect {
+    match wrap {
+        AnyWrap::Repeat => Effect::RepeatWrap,
+        AnyWrap::MirroredRepeat => Effect::MirrorWrap,
+        AnyWrap::Clamp => Effect::ClampWrap,
+    }
+}
+
+fn filter_effect(filter: AnyFilter) -> Effect {
+    match filter {
+        AnyFilter::Nearest => Effect::NearestFilter,
+        AnyFilter::Bilinear => Effect::BilinearFilter,
+    }
+}
+
+fn format_effect(format: AnyFormat) -> Effect {
+    match format {
+        AnyFormat::SrgbRgba8 => Effect::SrgbTexels,
+        AnyFormat::LinearRgba8 => Effect::LinearTexels,
+        AnyFormat::LinearFloat => Effect::FloatTexels,
+    }
+}
+
 fn light_effect(light: &LightNode) -> Effect {
     match light {
         LightNode::Area { .. } => Effect::EmittingSurfaces,
@@ -233,12 +215,14 @@ fn light_effect(light: &LightNode) -> Effect {
     }
 }
 
-fn has_image(node: &ColorNode) -> bool {
-    match node {
-        ColorNode::Image(_) => true,
-        ColorNode::Product(a, b) => has_image(a) || has_image(b),
-        ColorNode::Const(_) | ColorNode::Param(_) | ColorNode::VertexColor | ColorNode::Gray(_) => {
-            false
-        }
+fn camera_effect(camera: &CameraNode) -> Effect {
+    match camera {
+        CameraNode::Perspective => Effect::PerspectiveCamera,
+        CameraNode::Orthographic => Effect::OrthographicCamera,
     }
+}
+
+fn has_image(source: &SourceNode) -> bool {
+    let leaves = source.leaves();
+    leaves.iter().any(|leaf| matches!(leaf, Leaf::Image(_)))
 }

@@ -2,14 +2,13 @@
 
 use naga::compact::{KeepUnused, compact};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use residual_render::alpha::AlphaTest;
-use residual_render::camera::AnyCamera;
+use residual_render::bsdf::AnyInterface;
 use residual_render::domain::tape::{Outputs, Record, Tape};
 use residual_render::domain::{Buffer, Domain};
 use residual_render::layer::{Layer, Layers};
 use residual_render::program::{
-    AlphaNode, BsdfNode, ColorNode, EmissionNode, ImageNode, InputNode, LightNode, NormalNode,
-    Program, ScalarNode, SourceNode, Structure,
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, EmissionNode, ImageNode, InputNode, LightNode,
+    NormalNode, Program, ScalarNode, SourceNode, Structure,
 };
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
@@ -138,7 +137,7 @@ fn program(bsdf: BsdfNode) -> Program {
         normal: None,
         emission: None,
         bsdf,
-        alpha: None,
+        alpha_test: None,
     }
 }
 
@@ -146,7 +145,7 @@ fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Structure {
     Structure {
         programs,
         lights,
-        camera: AnyCamera::Perspective,
+        camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::Path,
         layers: Layers::NONE,
@@ -160,29 +159,32 @@ fn bsdfs() -> Vec<BsdfNode> {
         color: second,
         roughness: third,
     };
-    let glossy = BsdfNode::Glossy {
+    let coated = BsdfNode::CoatedDiffuse {
         albedo: first,
         roughness: third,
         reflectance: second,
         grazing: fourth,
     };
-    let glass = |solid| BsdfNode::Dielectric {
+    let glass = |interface| BsdfNode::Dielectric {
         transmittance: first,
         ior: fourth,
-        solid,
+        interface,
     };
     let phong = BsdfNode::Phong {
         color: second,
         exponent: third,
     };
-    let (a, b) = (Box::new(glossy.clone()), Box::new(glass(false)));
+    let (a, b) = (
+        Box::new(coated.clone()),
+        Box::new(glass(AnyInterface::Thin)),
+    );
     vec![
         BsdfNode::Black,
         diffuse.clone(),
         conductor.clone(),
-        glossy.clone(),
-        glass(true),
-        glass(false),
+        coated.clone(),
+        glass(AnyInterface::Solid),
+        glass(AnyInterface::Thin),
         phong.clone(),
         BsdfNode::Mix {
             a,
@@ -190,7 +192,7 @@ fn bsdfs() -> Vec<BsdfNode> {
             weight: third,
         },
         BsdfNode::Mix {
-            a: Box::new(glass(true)),
+            a: Box::new(glass(AnyInterface::Solid)),
             b: Box::new(conductor),
             weight: third,
         },
@@ -213,8 +215,8 @@ fn images() -> Vec<ImageNode> {
     .enumerate()
     {
         for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
-            for u in [AnyWrap::Repeat, AnyWrap::Mirror, AnyWrap::Clamp] {
-                for v in [AnyWrap::Repeat, AnyWrap::Mirror, AnyWrap::Clamp] {
+            for u in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
+                for v in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
                     let uv = UvMap {
                         set: k % 2,
                         transform: (k > 0).then_some(20),
@@ -263,21 +265,20 @@ fn everything() -> Structure {
         radiance: Input(0),
         double_sided: false,
     });
-    last.alpha = Some(AlphaNode {
+    last.alpha_test = Some(AlphaTestNode::AlphaBlend {
         alpha: ScalarNode::Product(
             Box::new(ScalarNode::Image(image)),
-            Box::new(ScalarNode::VertexAlpha),
+            Box::new(ScalarNode::VertexColor),
         ),
-        test: AlphaTest::Blend,
         attributes: all,
     });
     programs[1].emission = Some(EmissionNode {
         radiance: Input(1),
         double_sided: true,
     });
-    programs[1].alpha = Some(AlphaNode {
+    programs[1].alpha_test = Some(AlphaTestNode::AlphaMask {
         alpha: ScalarNode::Param(3),
-        test: AlphaTest::Mask(ScalarNode::Const(0.5)),
+        cutoff: ScalarNode::Const(0.5),
         attributes: Attributes::default(),
     });
     structure(programs, lights())
@@ -363,10 +364,10 @@ fn every_light() {
 
 #[test]
 fn every_camera_and_sampler() {
-    for camera in [AnyCamera::Perspective, AnyCamera::Orthographic] {
+    for camera in [CameraNode::Perspective, CameraNode::Orthographic] {
         for sampler in [AnySampler::Independent, AnySampler::Sobol] {
             let text = wgsl_module(&Structure {
-                camera,
+                camera: camera.clone(),
                 sampler,
                 ..structure(vec![], vec![])
             });
@@ -432,7 +433,7 @@ fn constants_leave_a_short_program() {
         "if ",
         "shadow",
         "seen",
-        "program_0_covers",
+        "program_0_alpha_test",
     ] {
         assert!(!text.contains(absent), "{absent} is not called for\n{text}");
     }

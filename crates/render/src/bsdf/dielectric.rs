@@ -1,7 +1,5 @@
 //! A smooth dielectric: glass, water, or a thin sheet of either.
 
-use std::marker::PhantomData;
-
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::{Bundle, Domain};
 use crate::math::vec3::vec3;
@@ -9,24 +7,48 @@ use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 use crate::texture::{ColorSource, ScalarSource};
 
-/// What lies behind the surface: a marker type.
+/// What lies behind the surface.
 pub trait Interface {
     /// Transmitted rays are refracted.
-    const REFRACTS: bool;
+    fn refracts(&self) -> bool;
 }
 
 /// A body: rays refract in and out of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Solid;
 impl Interface for Solid {
-    const REFRACTS: bool = true;
+    #[inline(always)]
+    fn refracts(&self) -> bool {
+        true
+    }
 }
 
 /// A sheet without thickness: what is transmitted goes straight on (KHR_materials_transmission without volume).
 #[derive(Clone, Copy, Debug)]
 pub struct Thin;
 impl Interface for Thin {
-    const REFRACTS: bool = false;
+    #[inline(always)]
+    fn refracts(&self) -> bool {
+        false
+    }
+}
+
+/// [`Interface`] chosen at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum AnyInterface {
+    /// [`Solid`].
+    Solid,
+    /// [`Thin`].
+    Thin,
+}
+impl Interface for AnyInterface {
+    #[inline(always)]
+    fn refracts(&self) -> bool {
+        match self {
+            Self::Solid => Solid.refracts(),
+            Self::Thin => Thin.refracts(),
+        }
+    }
 }
 
 /// A smooth dielectric surface: delta reflection and delta transmission, chosen by the Fresnel factor.
@@ -36,20 +58,11 @@ pub struct Dielectric<C, I, K> {
     pub transmittance: C,
     /// Index of refraction of the inside relative to the outside.
     pub ior: I,
-    interface: PhantomData<K>,
+    /// What lies behind the surface.
+    pub interface: K,
 }
 
 impl<C, I, K: Interface> Dielectric<C, I, K> {
-    /// A dielectric with these sources.
-    #[inline(always)]
-    pub fn new(transmittance: C, ior: I, _: K) -> Self {
-        Self {
-            transmittance,
-            ior,
-            interface: PhantomData,
-        }
-    }
-
     /// Index of refraction of what lies beyond the surface relative to what lies before it.
     #[inline(always)]
     fn eta<D: Domain>(&self, d: D, surface: &Surface<D>) -> D::F
@@ -58,7 +71,7 @@ impl<C, I, K: Interface> Dielectric<C, I, K> {
     {
         let ior = self.ior.scalar(d, surface);
         // A sheet is entered from either side.
-        if K::REFRACTS {
+        if self.interface.refracts() {
             d.select(surface.front, ior, d.lit(1.0) / ior)
         } else {
             ior
@@ -105,7 +118,7 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
         let (reflectance, g) = fresnel(d, wo.z, eta);
         let reflected = vec3(-wo.x, -wo.y, wo.z);
         let tint = self.transmittance.color(d, surface);
-        let (transmitted, weight) = if K::REFRACTS {
+        let (transmitted, weight) = if self.interface.refracts() {
             // Radiance is squeezed into a cone narrower by η² (Veach 1997, section 5.2).
             let scale = one / (eta * eta);
             (
@@ -137,7 +150,6 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
         BsdfKind {
             scatters: false,
             delta: true,
-            transmits: true,
         }
     }
 }

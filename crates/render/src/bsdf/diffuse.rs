@@ -46,7 +46,6 @@ impl<D: Domain, C: ColorSource<D>> Bsdf<D> for Diffuse<C> {
         BsdfKind {
             scatters: true,
             delta: false,
-            transmits: false,
         }
     }
 }
@@ -82,7 +81,6 @@ impl<D: Domain> Bsdf<D> for Black {
         BsdfKind {
             scatters: false,
             delta: false,
-            transmits: false,
         }
     }
 }

@@ -174,7 +174,6 @@ impl<D: Domain, C: ColorSource<D>, R: ScalarSource<D>> Bsdf<D> for Conductor<C, 
         BsdfKind {
             scatters: true,
             delta: false,
-            transmits: false,
         }
     }
 }

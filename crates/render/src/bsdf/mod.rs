@@ -7,17 +7,17 @@
 //! To add a BSDF: write one file with a struct generic over its sources, implement [`Bsdf`], and name it in
 //! `program::BsdfNode`.
 
+mod coated_diffuse;
 mod combine;
 mod dielectric;
 mod diffuse;
-mod glossy;
 pub mod microfacet;
 mod phong;
 
+pub use coated_diffuse::CoatedDiffuse;
 pub use combine::{Mix, Sum};
-pub use dielectric::{Dielectric, Interface, Solid, Thin, fresnel};
+pub use dielectric::{AnyInterface, Dielectric, Interface, Solid, Thin, fresnel};
 pub use diffuse::{Black, Diffuse};
-pub use glossy::Glossy;
 pub use microfacet::Conductor;
 pub use phong::Phong;
 
@@ -54,8 +54,6 @@ pub struct BsdfKind {
     pub scatters: bool,
     /// It has delta lobes.
     pub delta: bool,
-    /// Some light passes through.
-    pub transmits: bool,
 }
 
 impl BsdfKind {
@@ -65,7 +63,6 @@ impl BsdfKind {
         Self {
             scatters: self.scatters | other.scatters,
             delta: self.delta | other.delta,
-            transmits: self.transmits | other.transmits,
         }
     }
 }

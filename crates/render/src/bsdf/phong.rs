@@ -63,7 +63,6 @@ impl<D: Domain, C: ColorSource<D>, E: ScalarSource<D>> Bsdf<D> for Phong<C, E> {
         BsdfKind {
             scatters: true,
             delta: false,
-            transmits: false,
         }
     }
 }

@@ -110,12 +110,6 @@ impl<F: Real> Vec3<F> {
         d.max(d.max(self.x, self.y), self.z)
     }
 
-    /// Rec. 709 luminance of a colour.
-    #[inline(always)]
-    pub fn luminance<D: Domain<F = F>>(self, d: D) -> F {
-        self.dot(d, vec3(d.lit(0.2126), d.lit(0.7152), d.lit(0.0722)))
-    }
-
     /// `self + (other − self)·t`.
     #[inline(always)]
     pub fn lerp(self, other: Self, t: F) -> Self {

@@ -2,13 +2,13 @@
 
 use residual_bvh::{Hit, Ray};
 
-use super::boxed::{self, BoxedAlpha, BoxedMaterial};
-use super::{LightNode, Structure};
-use crate::alpha::is_there;
-use crate::camera::AnyCamera;
+use super::boxed::Boxing;
+use super::{BoxedMaterial, Structure};
+use crate::alpha::{AlphaTest, alpha_test};
+use crate::camera::Camera;
 use crate::domain::{Buffers, Domain, Scalar};
 use crate::layer::Layers;
-use crate::light::{Area, Directional, Environment, LightKind, Point, Spot};
+use crate::light::LightKind;
 use crate::sampler::AnySampler;
 use crate::scene::{MaterialVisitor, Scene};
 use crate::tracer::{AnyTracer, Layered, Settings, TracerNode};
@@ -18,9 +18,9 @@ use crate::triangle::program_in;
 pub struct Interpreted<'a, D: Domain> {
     buffers: &'a Buffers<'a>,
     materials: Vec<BoxedMaterial<'a, D>>,
-    alphas: Vec<Option<BoxedAlpha<'a, Scalar<'a>>>>,
+    alpha_tests: Vec<Option<Box<dyn AlphaTest<Scalar<'a>> + Send + Sync + 'a>>>,
     lights: Vec<Box<dyn LightKind<D> + Send + Sync + 'a>>,
-    camera: AnyCamera,
+    camera: Box<dyn Camera<D> + Send + Sync + 'a>,
     sampler: AnySampler,
     tracer: TracerNode,
     layers: Layers,
@@ -29,31 +29,14 @@ pub struct Interpreted<'a, D: Domain> {
 impl<'a, D: Domain + 'a> Interpreted<'a, D> {
     /// Builds the nodes of a structure whose data are in `buffers`.
     pub fn new(structure: &Structure, buffers: &'a Buffers<'a>) -> Self {
-        let light = |node: &LightNode| -> Box<dyn LightKind<D> + Send + Sync + 'a> {
-            match node {
-                LightNode::Area {
-                    emission,
-                    attributes,
-                } => Box::new(Area {
-                    emission: boxed::color(emission),
-                    attributes: *attributes,
-                }),
-                LightNode::Point => Box::new(Point),
-                LightNode::Spot => Box::new(Spot),
-                LightNode::Directional => Box::new(Directional),
-                LightNode::Environment => Box::new(Environment),
-            }
-        };
-        let alphas = structure
-            .programs
-            .iter()
-            .map(|program| program.alpha.as_ref().map(BoxedAlpha::new));
+        let programs = structure.programs.iter();
+        let alpha_tests = programs.map(|program| program.alpha_test.as_ref().map(Boxing::boxed));
         Self {
             buffers,
             materials: structure.programs.iter().map(BoxedMaterial::new).collect(),
-            alphas: alphas.collect(),
-            lights: structure.lights.iter().map(light).collect(),
-            camera: structure.camera,
+            alpha_tests: alpha_tests.collect(),
+            lights: structure.lights.iter().map(Boxing::boxed).collect(),
+            camera: structure.camera.boxed(),
             sampler: structure.sampler,
             tracer: structure.tracer,
             layers: structure.layers,
@@ -62,11 +45,11 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
 }
 
 impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
-    type Camera = AnyCamera;
+    type Camera = Box<dyn Camera<D> + Send + Sync + 'a>;
     type Tracer = Layered<AnyTracer<D, AnySampler>, Layers>;
     type Lights = [Box<dyn LightKind<D> + Send + Sync + 'a>];
 
-    fn camera(&self) -> &AnyCamera {
+    fn camera(&self) -> &Self::Camera {
         &self.camera
     }
     fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
@@ -81,21 +64,14 @@ impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
     fn programs(&self) -> usize {
         self.materials.len()
     }
-    fn has_alpha(&self) -> bool {
-        self.alphas.iter().any(Option::is_some)
+    fn has_alpha_tests(&self) -> bool {
+        self.alpha_tests.iter().any(Option::is_some)
     }
-    fn covers(&self, ray: &Ray, hit: &Hit) -> bool {
+    fn alpha_test(&self, ray: &Ray, hit: &Hit) -> bool {
         let program = program_in(self.buffers, hit.prim) as usize;
-        self.alphas[program].as_ref().is_none_or(|alpha| {
-            is_there(
-                self.buffers,
-                alpha.attributes,
-                &alpha.alpha,
-                &alpha.test,
-                ray,
-                hit,
-            )
-        })
+        self.alpha_tests[program]
+            .as_ref()
+            .is_none_or(|test| alpha_test(self.buffers, test, ray, hit))
     }
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         visitor.visit(&self.materials[program])

@@ -2,52 +2,24 @@
 
 mod boxed;
 mod interpreted;
+mod material;
+mod nodes;
+mod table;
+mod walk;
 
-pub use boxed::{BoxedAlpha, BoxedMaterial};
 pub use interpreted::Interpreted;
+pub use material::BoxedMaterial;
+pub use nodes::{
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, ImageNode, LightNode, Literal,
+    ScalarNode,
+};
+pub use walk::{Leaf, Source};
 
-use crate::alpha::AlphaTest;
-use crate::camera::AnyCamera;
 use crate::layer::Layers;
 use crate::sampler::AnySampler;
 use crate::surface::Attributes;
-use crate::texture::{AnyFilter, AnyFormat, AnyWrap, Image, Input};
+use crate::texture::Input;
 use crate::tracer::TracerNode;
-
-/// An image source whose kinds are values.
-pub type ImageNode = Image<AnyWrap, AnyWrap, AnyFilter, AnyFormat>;
-
-/// A colour source. Each variant is the type of the same name in `texture`.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ColorNode {
-    /// Printed into the program.
-    Const([f32; 3]),
-    /// A row of the parameter block.
-    Param(u32),
-    /// The vertex colour.
-    VertexColor,
-    /// An image.
-    Image(ImageNode),
-    /// A number as a grey.
-    Gray(Box<ScalarNode>),
-    /// A product.
-    Product(Box<ColorNode>, Box<ColorNode>),
-}
-
-/// A scalar source. Each variant is the type of the same name in `texture`.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ScalarNode {
-    /// Printed into the program.
-    Const(f32),
-    /// A word of the parameter block.
-    Param(u32),
-    /// The vertex alpha.
-    VertexAlpha,
-    /// One channel of an image.
-    Image(ImageNode),
-    /// A product.
-    Product(Box<ScalarNode>, Box<ScalarNode>),
-}
 
 /// An input of a program, evaluated once per point.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,45 +37,6 @@ pub enum SourceNode {
     Color(ColorNode),
     /// A number.
     Scalar(ScalarNode),
-}
-
-/// A BSDF. Each variant is the type of the same name in `bsdf`, each [`Input`] an input of the program.
-#[derive(Clone, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the fields are those of the types in `bsdf`")]
-pub enum BsdfNode {
-    Black,
-    Diffuse {
-        albedo: Input,
-    },
-    Conductor {
-        color: Input,
-        roughness: Input,
-    },
-    Glossy {
-        albedo: Input,
-        roughness: Input,
-        reflectance: Input,
-        grazing: Input,
-    },
-    Dielectric {
-        transmittance: Input,
-        ior: Input,
-        solid: bool,
-    },
-    Phong {
-        color: Input,
-        exponent: Input,
-    },
-    Mix {
-        a: Box<BsdfNode>,
-        b: Box<BsdfNode>,
-        weight: Input,
-    },
-    Sum {
-        a: Box<BsdfNode>,
-        b: Box<BsdfNode>,
-        probability: Input,
-    },
 }
 
 /// Emission of a program.
@@ -124,17 +57,6 @@ pub struct NormalNode {
     pub scale: Input,
 }
 
-/// Alpha of a program; evaluated by traversal, apart from the other inputs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AlphaNode {
-    /// Alpha.
-    pub alpha: ScalarNode,
-    /// What it is compared with.
-    pub test: AlphaTest<ScalarNode>,
-    /// What the two read.
-    pub attributes: Attributes,
-}
-
 /// A material program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
@@ -148,33 +70,19 @@ pub struct Program {
     pub emission: Option<EmissionNode>,
     /// Scattering.
     pub bsdf: BsdfNode,
-    /// Alpha.
-    pub alpha: Option<AlphaNode>,
-}
-
-/// A kind of light. Each variant is the type of the same name in `light`.
-#[derive(Clone, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the fields are those of the types in `light`")]
-pub enum LightNode {
-    Area {
-        emission: ColorNode,
-        attributes: Attributes,
-    },
-    Point,
-    Spot,
-    Directional,
-    Environment,
+    /// Whether the surface is there at all.
+    pub alpha_test: Option<AlphaTestNode>,
 }
 
 /// The structure of a whole scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Structure {
-    /// Material programs, by number.
+    /// Material programs, by index.
     pub programs: Vec<Program>,
-    /// Kinds of lights, by number.
+    /// Kinds of lights, by index.
     pub lights: Vec<LightNode>,
     /// The camera's kind.
-    pub camera: AnyCamera,
+    pub camera: CameraNode,
     /// The sampler's kind.
     pub sampler: AnySampler,
     /// The tracer's kind.

@@ -40,6 +40,17 @@ impl Attributes {
             colors: self.colors | other.colors,
         }
     }
+
+    /// What both read.
+    pub fn intersection(self, other: Self) -> Self {
+        Self {
+            normals: self.normals & other.normals,
+            tangents: self.tangents & other.tangents,
+            uv0: self.uv0 & other.uv0,
+            uv1: self.uv1 & other.uv1,
+            colors: self.colors & other.colors,
+        }
+    }
 }
 
 record! {

@@ -24,7 +24,7 @@ pub trait Wrapping {
 pub struct Repeat;
 /// Tiles, every other one mirrored.
 #[derive(Clone, Copy, Debug)]
-pub struct Mirror;
+pub struct MirroredRepeat;
 /// The border goes on.
 #[derive(Clone, Copy, Debug)]
 pub struct Clamp;
@@ -42,7 +42,7 @@ impl Wrapping for Repeat {
         modulo(d, i, size)
     }
 }
-impl Wrapping for Mirror {
+impl Wrapping for MirroredRepeat {
     #[inline(always)]
     fn wrap<D: Domain>(&self, d: D, i: D::F, size: D::F) -> D::F {
         let double = size + size;
@@ -62,8 +62,8 @@ impl Wrapping for Clamp {
 pub enum AnyWrap {
     /// [`Repeat`].
     Repeat,
-    /// [`Mirror`].
-    Mirror,
+    /// [`MirroredRepeat`].
+    MirroredRepeat,
     /// [`Clamp`].
     Clamp,
 }
@@ -73,7 +73,7 @@ impl Wrapping for AnyWrap {
     fn wrap<D: Domain>(&self, d: D, i: D::F, size: D::F) -> D::F {
         match self {
             Self::Repeat => Repeat.wrap(d, i, size),
-            Self::Mirror => Mirror.wrap(d, i, size),
+            Self::MirroredRepeat => MirroredRepeat.wrap(d, i, size),
             Self::Clamp => Clamp.wrap(d, i, size),
         }
     }

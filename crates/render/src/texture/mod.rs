@@ -10,7 +10,7 @@ mod srgb;
 
 pub use image::{
     AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8,
-    Mirror, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
+    MirroredRepeat, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
 };
 pub use params::{ColorParam, ImageParam, TransformParam};
 pub use srgb::{srgb_code, srgb_table};

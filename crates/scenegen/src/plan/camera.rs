@@ -1,7 +1,8 @@
 //! The camera: one of the scene's, one given by the user, or one that frames the scene.
 
 use glam::{Quat, Vec3};
-use residual_render::camera::{AnyCamera, CameraRecord};
+use residual_render::camera::CameraRecord;
+use residual_render::program::CameraNode;
 use residual_render::scene_data::SceneData;
 
 use super::{PlanError, PlanOptions};
@@ -118,7 +119,7 @@ pub(super) fn place(
     bounds: &Bounds,
     data: &mut SceneData,
     warnings: &mut Vec<Warning>,
-) -> Result<(AnyCamera, String), PlanError> {
+) -> Result<(CameraNode, String), PlanError> {
     let aspect = options.size[0] as f32 / options.size[1] as f32;
     let default = || {
         scene
@@ -163,13 +164,15 @@ pub(super) fn place(
     };
     let (kind, half_height, forward) = match camera.projection {
         Projection::Perspective { yfov } => (
-            AnyCamera::Perspective,
+            CameraNode::Perspective,
             (yfov * 0.5).tan(),
             camera.rotation * Vec3::NEG_Z,
         ),
-        Projection::Orthographic { ymag } => {
-            (AnyCamera::Orthographic, ymag, camera.rotation * Vec3::NEG_Z)
-        }
+        Projection::Orthographic { ymag } => (
+            CameraNode::Orthographic,
+            ymag,
+            camera.rotation * Vec3::NEG_Z,
+        ),
     };
     let right = camera.rotation * Vec3::X * (half_height * aspect);
     let up = camera.rotation * Vec3::Y * half_height;

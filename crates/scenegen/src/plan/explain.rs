@@ -1,7 +1,7 @@
 //! A plan in words: what was decided, and why.
 
 use residual_render::domain::Buffer;
-use residual_render::program::{ColorNode, Program, ScalarNode, SourceNode};
+use residual_render::program::{Leaf, Program, Source};
 use residual_render::triangle::TriangleRecord;
 
 use super::{Binding, Plan};
@@ -29,46 +29,18 @@ pub struct BindingTimes {
 }
 
 impl BindingTimes {
-    /// Of a program's inputs, and of its alpha.
+    /// Of a program's inputs, and of its alpha test.
     pub fn of(program: &Program) -> Self {
         let mut times = Self::default();
-        for input in &program.inputs {
-            match &input.source {
-                SourceNode::Color(node) => times.add_color(node),
-                SourceNode::Scalar(node) => times.add_scalar(node),
+        for leaf in program.leaves() {
+            match leaf {
+                Leaf::Constant => times.constants += 1,
+                Leaf::Parameter => times.parameters += 1,
+                Leaf::Image(_) => times.images += 1,
+                Leaf::VertexColor | Leaf::Coordinates(_) => times.vertices += 1,
             }
-        }
-        if let Some(alpha) = &program.alpha {
-            times.add_scalar(&alpha.alpha);
         }
         times
-    }
-
-    fn add_color(&mut self, node: &ColorNode) {
-        match node {
-            ColorNode::Const(_) => self.constants += 1,
-            ColorNode::Param(_) => self.parameters += 1,
-            ColorNode::VertexColor => self.vertices += 1,
-            ColorNode::Image(_) => self.images += 1,
-            ColorNode::Gray(node) => self.add_scalar(node),
-            ColorNode::Product(a, b) => {
-                self.add_color(a);
-                self.add_color(b);
-            }
-        }
-    }
-
-    fn add_scalar(&mut self, node: &ScalarNode) {
-        match node {
-            ScalarNode::Const(_) => self.constants += 1,
-            ScalarNode::Param(_) => self.parameters += 1,
-            ScalarNode::VertexAlpha => self.vertices += 1,
-            ScalarNode::Image(_) => self.images += 1,
-            ScalarNode::Product(a, b) => {
-                self.add_scalar(a);
-                self.add_scalar(b);
-            }
-        }
     }
 }
 
@@ -91,7 +63,7 @@ impl Plan {
             decision("vertices", self.vertices()),
             decision("images", self.images()),
             decision("sides", self.sides()),
-            decision("alpha", self.alpha()),
+            decision("alpha tests", self.alpha_tests()),
             decision(
                 "lights",
                 match lights {
@@ -178,9 +150,9 @@ impl Plan {
         }
     }
 
-    fn alpha(&self) -> String {
-        let asked = self.data.lets_through.iter().filter(|&&lets| lets).count();
-        match asked {
+    fn alpha_tests(&self) -> String {
+        let tested = self.data.alpha_tested.iter().filter(|&&tested| tested);
+        match tested.count() {
             0 => "none: traversal does not ask".to_owned(),
             some => format!(
                 "traversal asks about hits on {some} of {} triangles",

@@ -2,6 +2,7 @@
 
 use glam::{Mat3, Vec3, Vec4};
 use residual_render::domain::Buffer;
+use residual_render::program::AlphaTestNode;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{
     Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
@@ -55,10 +56,10 @@ fn visible<'a>(
             return Err(PlanError::TooLarge { what: "triangles" });
         }
         let program = &materials.programs[planned.program as usize];
-        let alpha = program.alpha.as_ref();
-        let reads = program
-            .attributes
-            .union(alpha.map_or(Attributes::NONE, |alpha| alpha.attributes));
+        let alpha_test = program.alpha_test.iter();
+        let reads = alpha_test
+            .map(AlphaTestNode::given_attributes)
+            .fold(program.attributes, Attributes::union);
         visible.push(Visible {
             instance,
             mesh,
@@ -257,7 +258,7 @@ fn pack_triangles(object_index: u32, seen: &Visible<'_>, positions: &[Vec3], dat
     }
     let count = data.triangle_count();
     data.single_sided.resize(count, planned.culled);
-    data.lets_through.resize(count, planned.lets_through);
+    data.alpha_tested.resize(count, planned.alpha_tested);
 }
 
 /// The vertices of each triangle; those of a material that reads none are never asked for.

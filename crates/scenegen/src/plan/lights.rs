@@ -6,7 +6,7 @@ use residual_render::alias_table::alias_entries;
 use residual_render::light::{
     self, AreaRecord, EnvironmentHeader, LightRecord, PunctualRecord, push_light, set_picks,
 };
-use residual_render::program::{ColorNode, LightNode, SourceNode};
+use residual_render::program::{LightNode, Source, SourceNode};
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
 
@@ -115,7 +115,7 @@ impl PlannedLights {
             };
             let node = LightNode::Area {
                 emission: source.clone(),
-                attributes: reads(source, program.attributes),
+                attributes: source.attributes().intersection(program.attributes),
             };
             let radiance = mean_emission(scene, &scene.materials[material].emission);
             let sides = if emission.double_sided { 2.0 } else { 1.0 };
@@ -279,46 +279,4 @@ fn texel_weights(image: &ImageDesc) -> Vec<f64> {
         }
     }
     weights
-}
-
-/// The attributes of a program that one of its colours reads.
-fn reads(
-    node: &ColorNode,
-    of: residual_render::surface::Attributes,
-) -> residual_render::surface::Attributes {
-    use residual_render::program::ScalarNode;
-    use residual_render::surface::Attributes;
-    fn scalar(node: &ScalarNode, of: Attributes) -> Attributes {
-        match node {
-            ScalarNode::Const(_) | ScalarNode::Param(_) => Attributes::NONE,
-            ScalarNode::VertexAlpha => Attributes {
-                colors: of.colors,
-                ..Attributes::NONE
-            },
-            ScalarNode::Image(image) => uv(image.uv.set, of),
-            ScalarNode::Product(a, b) => scalar(a, of).union(scalar(b, of)),
-        }
-    }
-    fn uv(set: usize, of: Attributes) -> Attributes {
-        match set {
-            0 => Attributes {
-                uv0: of.uv0,
-                ..Attributes::NONE
-            },
-            _ => Attributes {
-                uv1: of.uv1,
-                ..Attributes::NONE
-            },
-        }
-    }
-    match node {
-        ColorNode::Const(_) | ColorNode::Param(_) => Attributes::NONE,
-        ColorNode::VertexColor => Attributes {
-            colors: of.colors,
-            ..Attributes::NONE
-        },
-        ColorNode::Image(image) => uv(image.uv.set, of),
-        ColorNode::Gray(node) => scalar(node, of),
-        ColorNode::Product(a, b) => reads(a, of).union(reads(b, of)),
-    }
 }

@@ -4,6 +4,8 @@
 //! print and interpreters build, and the [`SceneData`] that it reads. Materials whose structure agrees share a
 //! program; what distinguishes them are parameters.
 
+mod alpha_test;
+mod bsdfs;
 mod camera;
 mod closed;
 mod explain;
@@ -11,6 +13,7 @@ mod geometry;
 mod images;
 mod lights;
 mod materials;
+mod program;
 mod sources;
 
 use std::collections::BTreeMap;
@@ -246,8 +249,8 @@ struct PlannedMaterial {
     params: u32,
     /// Its surfaces are not seen from behind.
     culled: bool,
-    /// It has alpha.
-    lets_through: bool,
+    /// It has an alpha test.
+    alpha_tested: bool,
 }
 
 /// All materials, planned. Those that no instance uses, or whose surfaces are never there, are not.

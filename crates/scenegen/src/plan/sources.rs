@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use residual_render::program::{ColorNode, ImageNode, ScalarNode};
+use residual_render::program::{ColorNode, ImageNode, ScalarNode, Source};
 use residual_render::record::BufferRecord;
 use residual_render::surface::Attributes;
 use residual_render::texture::{
@@ -16,7 +16,7 @@ use crate::desc::{
 };
 use crate::effect::Effect;
 
-/// Turns the inputs of one material's description into sources, collecting parameters and the attributes read.
+/// Turns the inputs of one material's description into sources, collecting parameters.
 pub(super) struct Sources<'a> {
     scene: &'a SceneDesc,
     binding: Binding,
@@ -25,10 +25,9 @@ pub(super) struct Sources<'a> {
     /// The material, for messages.
     place: String,
     params: Vec<u32>,
-    read: Attributes,
     /// Inputs that several lobes share become one source.
     scalars: Vec<(ScalarInput, ScalarNode)>,
-    colors: Vec<(ColorInput, bool, ColorNode)>,
+    colors: Vec<(ColorInput, ColorNode)>,
     image_names: BTreeMap<u32, String>,
     dismissed: Vec<Dismissed>,
 }
@@ -58,7 +57,6 @@ impl<'a> Sources<'a> {
             images,
             place,
             params: Vec::new(),
-            read: Attributes::NONE,
             scalars: Vec::new(),
             colors: Vec::new(),
             image_names: BTreeMap::new(),
@@ -66,9 +64,9 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// The attributes read since the last call.
-    pub(super) fn take_attributes(&mut self) -> Attributes {
-        std::mem::take(&mut self.read)
+    /// The vertex attributes that a source reads of those that there are.
+    pub(super) fn read(&self, source: &impl Source) -> Attributes {
+        source.attributes().intersection(self.available)
     }
 
     /// Notes that something of the material changes nothing.
@@ -151,19 +149,27 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// A colour input; with `vertex`, times the vertex colour where meshes have one.
-    pub(super) fn color(&mut self, input: &ColorInput, vertex: bool) -> ColorNode {
-        let vertex = vertex && self.available.colors;
+    /// A colour input, times the vertex colour where meshes have one.
+    pub(super) fn tinted_color(&mut self, input: &ColorInput) -> ColorNode {
+        let color = self.color(input);
+        match self.available.colors {
+            true => self.color_product(color, ColorNode::VertexColor),
+            false => color,
+        }
+    }
+
+    /// A colour input.
+    pub(super) fn color(&mut self, input: &ColorInput) -> ColorNode {
         let mut known = self.colors.iter();
-        if let Some((.., node)) = known.find(|(i, v, _)| (i, *v) == (input, vertex)) {
+        if let Some((_, node)) = known.find(|(other, _)| other == input) {
             return node.clone();
         }
-        let node = self.new_color(input, vertex);
-        self.colors.push((input.clone(), vertex, node.clone()));
+        let node = self.new_color(input);
+        self.colors.push((input.clone(), node.clone()));
         node
     }
 
-    fn new_color(&mut self, input: &ColorInput, vertex: bool) -> ColorNode {
+    fn new_color(&mut self, input: &ColorInput) -> ColorNode {
         let mut factor = input.factor;
         let mut texture = input.texture.as_ref();
         if let Some(of) = texture {
@@ -185,10 +191,6 @@ impl<'a> Sources<'a> {
             let image = ColorNode::Image(self.image(texture, 0, AnyFormat::SrgbRgba8));
             node = self.color_product(node, image);
         }
-        if vertex {
-            self.read.colors = true;
-            node = self.color_product(node, ColorNode::VertexColor);
-        }
         node
     }
 
@@ -209,9 +211,9 @@ impl<'a> Sources<'a> {
             return self.number(input.factor);
         };
         if let Some(value) = known {
-            let reason = match input.factor == 0.0 {
-                true => "its factor is 0",
-                false => "its channel is the same everywhere",
+            let reason = match input.factor {
+                0.0 => "its factor is 0",
+                _ => "its channel is the same everywhere",
             };
             self.dismiss_image(texture, reason);
             return self.number(value);
@@ -236,8 +238,7 @@ impl<'a> Sources<'a> {
     pub(super) fn alpha(&mut self, input: &ScalarInput) -> ScalarNode {
         let alpha = self.scalar(input);
         if self.available.colors {
-            self.read.colors = true;
-            return self.scalar_product(alpha, ScalarNode::VertexAlpha);
+            return self.scalar_product(alpha, ScalarNode::VertexColor);
         }
         alpha
     }
@@ -295,17 +296,13 @@ impl<'a> Sources<'a> {
         };
         let wrap = desc.wrap.map(|wrap| match wrap {
             Wrap::Repeat => AnyWrap::Repeat,
-            Wrap::Mirror => AnyWrap::Mirror,
+            Wrap::Mirror => AnyWrap::MirroredRepeat,
             Wrap::Clamp => AnyWrap::Clamp,
         });
         let filter = match desc.filter {
             Filter::Nearest => AnyFilter::Nearest,
             Filter::Linear => AnyFilter::Bilinear,
         };
-        match texture.uv_set {
-            0 => self.read.uv0 |= self.available.uv0,
-            _ => self.read.uv1 |= self.available.uv1,
-        }
         let image = self.images.param(self.scene, desc.image);
         let slot = self.param_record(image);
         let name = self.scene.images[desc.image].name.clone();

@@ -1,61 +1,107 @@
 //! Where lines of emitted Rust break: rustfmt's rules with its default widths, for the few forms that are emitted.
 
 /// Longest line.
-const WIDTH: usize = 100;
+pub(super) const WIDTH: usize = 100;
 /// Longest arguments of a call on one line.
 const ARGUMENTS: usize = 60;
 /// Longest fields of a struct literal on one line.
 const FIELDS: usize = 18;
 /// Columns of a level.
-const LEVEL: usize = 4;
+pub(super) const LEVEL: usize = 4;
+
+/// Text that starts with a name, and where the name is from.
+#[derive(Debug, Clone)]
+pub(super) struct Name {
+    pub(super) text: String,
+    pub(super) origin: Origin,
+}
+
+/// Where a name is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Origin {
+    /// It is known everywhere: a number, a keyword, a primitive type, a local variable.
+    Known,
+    /// The emitted module, of which programs are modules.
+    Emitted,
+    /// A module of the renderer's crate.
+    Render(&'static str),
+}
+
+impl Name {
+    /// What is known everywhere.
+    pub(super) fn known(text: impl Into<String>) -> Self {
+        let (text, origin) = (text.into(), Origin::Known);
+        Self { text, origin }
+    }
+
+    /// Something of the emitted module.
+    pub(super) fn emitted(text: impl Into<String>) -> Self {
+        let (text, origin) = (text.into(), Origin::Emitted);
+        Self { text, origin }
+    }
+
+    /// Something of a module of the renderer's crate.
+    pub(super) fn of(module: &'static str, text: impl Into<String>) -> Self {
+        let (text, origin) = (text.into(), Origin::Render(module));
+        Self { text, origin }
+    }
+}
 
 /// A type or an expression, before it is broken into lines.
 #[derive(Debug, Clone)]
 pub(super) enum Code {
     /// Never broken.
-    Word(String),
-    /// A call, a tuple or a type with arguments: `open` ends with a bracket.
-    List { open: String, items: Vec<Code> },
+    Word(Name),
+    /// A call, a tuple or a type with arguments: its name with the bracket that opens.
+    List { open: Name, items: Vec<Code> },
     /// A struct literal: what precedes each value, such as `albedo: `, and at the end the rest of the fields.
     Fields {
-        name: String,
+        name: Name,
         fields: Vec<(String, Code)>,
         rest: Option<&'static str>,
     },
-    /// A method call, with the dot.
+    /// A method call, with the dot, and the trait that has the method.
     Method {
         receiver: Box<Code>,
         call: &'static str,
+        of: Name,
     },
 }
 
 impl Code {
+    /// A word that is known everywhere.
     pub(super) fn word(text: impl Into<String>) -> Self {
-        Self::Word(text.into())
+        Self::Word(Name::known(text))
     }
 
-    /// A call or a tuple struct; a tuple without a name.
-    pub(super) fn call(name: &str, items: impl Into<Vec<Self>>) -> Self {
-        Self::list(format!("{name}("), items)
+    /// A tuple.
+    pub(super) fn tuple(items: impl Into<Vec<Self>>) -> Self {
+        Self::call(Name::known(""), items)
+    }
+
+    /// A call or a tuple struct.
+    pub(super) fn call(name: Name, items: impl Into<Vec<Self>>) -> Self {
+        Self::list(name, '(', items)
     }
 
     /// A type with arguments.
-    pub(super) fn generic(name: &str, items: impl Into<Vec<Self>>) -> Self {
-        Self::list(format!("{name}<"), items)
+    pub(super) fn generic(name: Name, items: impl Into<Vec<Self>>) -> Self {
+        Self::list(name, '<', items)
     }
 
-    fn list(open: String, items: impl Into<Vec<Self>>) -> Self {
+    fn list(mut open: Name, bracket: char, items: impl Into<Vec<Self>>) -> Self {
+        open.text.push(bracket);
         let items = items.into();
         Self::List { open, items }
     }
 
     /// A struct literal.
     pub(super) fn literal(
-        name: &str,
+        name: Name,
         fields: impl IntoIterator<Item = (&'static str, Self)>,
     ) -> Self {
         Self::Fields {
-            name: name.to_owned(),
+            name,
             fields: fields
                 .into_iter()
                 .map(|(name, value)| field(name, value))
@@ -75,10 +121,24 @@ impl Code {
         }
     }
 
-    /// A method called on it.
-    pub(super) fn method(self, call: &'static str) -> Self {
+    /// A method of a trait called on it.
+    pub(super) fn method(self, call: &'static str, of: Name) -> Self {
         let receiver = Box::new(self);
-        Self::Method { receiver, call }
+        Self::Method { receiver, call, of }
+    }
+
+    /// All names in it.
+    pub(super) fn names(&self) -> Vec<&Name> {
+        let (name, parts): (_, Vec<&Self>) = match self {
+            Self::Word(name) => (name, Vec::new()),
+            Self::List { open, items } => (open, items.iter().collect()),
+            Self::Fields { name, fields, .. } => {
+                (name, fields.iter().map(|(_, value)| value).collect())
+            }
+            Self::Method { receiver, of, .. } => (of, vec![&**receiver]),
+        };
+        let inner = parts.into_iter().flat_map(Self::names);
+        std::iter::once(name).chain(inner).collect()
     }
 
     /// In lines, where the first starts at a column of a line that is indented by `indent`, and the last is followed by
@@ -106,9 +166,10 @@ impl Code {
     /// On one line, if that is allowed where there is room.
     fn one_line(&self) -> Option<String> {
         match self {
-            Self::Word(text) => Some(text.clone()),
+            Self::Word(name) => Some(name.text.clone()),
             Self::List { open, items } => {
                 let items: Option<Vec<_>> = items.iter().map(Self::one_line).collect();
+                let open = &open.text;
                 let (items, close) = (items?.join(", "), closing(open));
                 let narrow = close == '>' || self.single().is_some() || items.len() <= ARGUMENTS;
                 narrow.then(|| format!("{open}{items}{close}"))
@@ -120,16 +181,18 @@ impl Code {
                 let mut fields = fields.collect::<Option<Vec<_>>>()?;
                 fields.extend(rest.map(|rest| format!("..{rest}")));
                 let fields = fields.join(", ");
-                (fields.len() <= FIELDS).then(|| format!("{name} {{ {fields} }}"))
+                (fields.len() <= FIELDS).then(|| format!("{} {{ {fields} }}", name.text))
             }
-            Self::Method { receiver, call } => Some(format!("{}{call}", receiver.one_line()?)),
+            Self::Method { receiver, call, .. } => Some(format!("{}{call}", receiver.one_line()?)),
         }
     }
 
     /// The only argument of a call.
     fn single(&self) -> Option<&Self> {
         match self {
-            Self::List { open, items } if closing(open) == ')' && items.len() == 1 => items.first(),
+            Self::List { open, items } if closing(&open.text) == ')' && items.len() == 1 => {
+                items.first()
+            }
             _ => None,
         }
     }
@@ -137,8 +200,9 @@ impl Code {
     fn broken(&self, indent: usize, column: usize, after: usize) -> String {
         let inner = indent + LEVEL;
         match self {
-            Self::Word(text) => text.clone(),
+            Self::Word(name) => name.text.clone(),
             Self::List { open, items } => {
+                let open = &open.text;
                 // A call's only argument opens where the call does.
                 if let Some(item @ (Self::List { .. } | Self::Fields { .. })) = self.single() {
                     let item = item.lines(indent, column + open.len(), after + 1);
@@ -156,13 +220,13 @@ impl Code {
                     Some(rest) => format!("{}..{rest}\n{}}}", spaces(LEVEL), spaces(indent)),
                 };
                 block(
-                    &format!("{name} {{"),
+                    &format!("{} {{", name.text),
                     fields.iter().map(field),
                     indent,
                     &close,
                 )
             }
-            Self::Method { receiver, call } => match receiver.one_line() {
+            Self::Method { receiver, call, .. } => match receiver.one_line() {
                 Some(line) if column + line.len() <= WIDTH => {
                     format!("{line}\n{}{call}", spaces(inner))
                 }
@@ -178,7 +242,7 @@ impl Code {
 /// A field, short where the value has the field's name.
 fn field(name: &'static str, value: Code) -> (String, Code) {
     match &value {
-        Code::Word(text) if text == name => (String::new(), value),
+        Code::Word(word) if word.text == name => (String::new(), value),
         _ => (format!("{name}: "), value),
     }
 }

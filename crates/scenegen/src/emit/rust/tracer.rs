@@ -6,10 +6,12 @@ use residual_render::layer::Layers;
 use residual_render::program::Structure;
 use residual_render::tracer::TracerNode;
 
-use super::layout::Code;
+use super::layout::{Code, Name};
+use super::module::Module;
 
 /// The constant with the layers.
-pub(super) fn layers(out: &mut String, layers: Layers) -> fmt::Result {
+pub(super) fn layers(out: &mut Module, layers: Layers) -> fmt::Result {
+    out.import("layer", &["Layers"]);
     let names: Vec<_> = layers.iter().map(|layer| layer.name()).collect();
     let names = match names.is_empty() {
         true => "none".to_owned(),
@@ -23,49 +25,59 @@ pub(super) fn layers(out: &mut String, layers: Layers) -> fmt::Result {
     )
 }
 
+fn sampler(structure: &Structure) -> Code {
+    Code::Word(Name::of("sampler", format!("{:?}", structure.sampler)))
+}
+
 /// The associated type of the tracer.
-pub(super) fn associated_type(out: &mut String, structure: &Structure) -> fmt::Result {
-    let sampler = Code::word(format!("{:?}", structure.sampler));
-    let tracer = Code::generic(name(structure.tracer), [Code::word("D"), sampler]);
+pub(super) fn associated_type(out: &mut Module, structure: &Structure) -> fmt::Result {
+    let parameters = [Code::word("D"), sampler(structure)];
+    let tracer = Code::generic(name(structure.tracer), parameters);
     let tracer = match structure.layers {
         Layers::NONE => tracer,
         layers => {
-            let layers = Code::word(format!("ConstLayers<{:#b}>", layers.bits()));
-            Code::generic("Layered", [tracer, layers])
+            let layers = format!("ConstLayers<{:#b}>", layers.bits());
+            let layers = Code::Word(Name::of("layer", layers));
+            Code::generic(Name::of("tracer", "Layered"), [tracer, layers])
         }
     };
     let start = "    type Tracer = ";
-    writeln!(out, "{start}{};", tracer.lines(4, start.len(), 1))
+    let tracer = out.lines(&tracer, 4, start.len(), 1);
+    writeln!(out, "{start}{tracer};")
 }
 
 /// The method that gives the tracer.
-pub(super) fn method(out: &mut String, structure: &Structure) -> fmt::Result {
+pub(super) fn method(out: &mut Module, structure: &Structure) -> fmt::Result {
+    out.import("tracer", &["Settings"]);
     let mut fields = vec![
-        ("sampler", Code::word(format!("{:?}", structure.sampler))),
+        ("sampler", sampler(structure)),
         ("settings", Code::word("settings")),
     ];
     if let TracerNode::Debug(view) = structure.tracer {
-        fields.push(("view", Code::word(format!("DebugView::{view:?}"))));
+        let view = Name::of("tracer", format!("DebugView::{view:?}"));
+        fields.push(("view", Code::Word(view)));
     }
     let tracer = Code::literal(name(structure.tracer), fields);
     let tracer = match structure.layers {
         Layers::NONE => tracer,
-        _ => Code::literal(
-            "Layered",
-            [("tracer", tracer), ("layers", Code::word("ConstLayers"))],
-        ),
+        _ => {
+            let layers = Code::Word(Name::of("layer", "ConstLayers"));
+            let fields = [("tracer", tracer), ("layers", layers)];
+            Code::literal(Name::of("tracer", "Layered"), fields)
+        }
     };
+    let tracer = out.lines(&tracer, 8, 8, 0);
     writeln!(
         out,
-        "    #[inline(always)]\n    fn tracer(&self, settings: Settings<D>) -> Self::Tracer {{\n        {}\n    }}",
-        tracer.lines(8, 8, 0)
+        "    #[inline(always)]\n    fn tracer(&self, settings: Settings<D>) -> Self::Tracer {{\n        {tracer}\n    }}"
     )
 }
 
-fn name(tracer: TracerNode) -> &'static str {
-    match tracer {
+fn name(tracer: TracerNode) -> Name {
+    let name = match tracer {
         TracerNode::Path => "PathTracer",
         TracerNode::AmbientOcclusion => "AmbientOcclusion",
         TracerNode::Debug(_) => "Debug",
-    }
+    };
+    Name::of("tracer", name)
 }

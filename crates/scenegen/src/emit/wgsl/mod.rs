@@ -32,7 +32,7 @@ fn copysign(magnitude: f32, sign: f32) -> f32 {
 }
 ";
 
-/// The module of a scene: `emit`, for each program `program_K_step` and `_covers`, and `miss`. What the scene does not
+/// The module of a scene: `emit`, for each program `program_K_step` and `_alpha_test`, and `miss`. What the scene does not
 /// call for is not there.
 pub fn wgsl_module(structure: &Structure) -> String {
     let mut module = Module::default();

@@ -2,14 +2,13 @@
 //!
 //! Options of the tracer are parameters, so that none of them makes another module.
 
+use residual_render::alpha::AlphaTest as _;
 use residual_render::domain::tape::{Function, Outputs, Record, Tape};
 use residual_render::domain::{Buffers, Domain};
 use residual_render::layer::{Layer, Layers};
 use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
-use residual_render::program::{
-    AlphaNode, BoxedAlpha, BoxedMaterial, Interpreted, Program, Structure,
-};
+use residual_render::program::{AlphaTestNode, BoxedMaterial, Interpreted, Program, Structure};
 use residual_render::sampler::SampleKey;
 use residual_render::scene::Scene;
 use residual_render::surface::{Hit, Ray};
@@ -196,16 +195,16 @@ fn layers<'t>(
     outputs
 }
 
-fn alpha(index: usize, node: &AlphaNode) -> Recorded {
+fn alpha_test(index: usize, node: &AlphaTestNode) -> Recorded {
     let tape = Tape::new();
     let d = Record::new(&tape);
     let hit = hit(&tape);
     let ray = [tape.vector("org"), tape.vector("dir")];
-    let covers = BoxedAlpha::new(node).covers(d, ray, &hit);
+    let passes = node.boxed::<Record<'_>>().passes(d, ray, &hit);
     Recorded {
         function: tape.function(
-            format!("program_{index}_covers"),
-            Outputs::new().truth("covers", covers),
+            format!("program_{index}_alpha_test"),
+            Outputs::new().truth("passes", passes),
         ),
         result: "",
         comment: "Whether the surface is there for this hit of the ray.".to_owned(),
@@ -219,10 +218,11 @@ pub(super) fn program(
     structure: &Structure,
     outcome: Outcome,
 ) -> Vec<Recorded> {
-    let alpha = program.alpha.as_ref().map(|node| alpha(index, node));
+    let test = program.alpha_test.as_ref();
+    let test = test.map(|node| alpha_test(index, node));
     step(index, program, structure, outcome)
         .into_iter()
-        .chain(alpha)
+        .chain(test)
         .collect()
 }
 

@@ -16,7 +16,7 @@ use crate::texture::{ColorSource, ScalarSource};
 
 /// GGX reflection over a diffuse base that receives what the Fresnel factor leaves.
 #[derive(Clone, Copy, Debug)]
-pub struct Glossy<C, R, S, G> {
+pub struct CoatedDiffuse<C, R, S, G> {
     /// Albedo of the base.
     pub albedo: C,
     /// Perceptual roughness of the coat.
@@ -71,7 +71,7 @@ impl<D: Domain> Coat<D> {
     }
 }
 
-impl<C, R, S, G> Glossy<C, R, S, G> {
+impl<C, R, S, G> CoatedDiffuse<C, R, S, G> {
     #[inline(always)]
     fn coat<D: Domain>(&self, d: D, surface: &Surface<D>) -> Coat<D>
     where
@@ -89,7 +89,7 @@ impl<C, R, S, G> Glossy<C, R, S, G> {
     }
 }
 
-impl<D, C, R, S, G> Bsdf<D> for Glossy<C, R, S, G>
+impl<D, C, R, S, G> Bsdf<D> for CoatedDiffuse<C, R, S, G>
 where
     D: Domain,
     C: ColorSource<D>,
@@ -135,7 +135,6 @@ where
         BsdfKind {
             scatters: true,
             delta: false,
-            transmits: false,
         }
     }
 }

@@ -1,0 +1,89 @@
+//! Material programs as boxed nodes, over any domain.
+
+use super::{EmissionNode, NormalNode, Program, SourceNode};
+use crate::bsdf::Bsdf;
+use crate::domain::Domain;
+use crate::material::{Material, Shading, decode_normal, front_only};
+use crate::math::Vec3;
+use crate::surface::{Attributes, MAX_INPUTS, Surface};
+use crate::texture::{ColorSource, ScalarSource};
+
+enum BoxedInput<'a, D: Domain> {
+    Color(Box<dyn ColorSource<D> + Send + Sync + 'a>),
+    Scalar(Box<dyn ScalarSource<D> + Send + Sync + 'a>),
+}
+
+/// A material program as boxed nodes.
+pub struct BoxedMaterial<'a, D: Domain> {
+    attributes: Attributes,
+    inputs: Vec<BoxedInput<'a, D>>,
+    normal: Option<NormalNode>,
+    emission: Option<EmissionNode>,
+    bsdf: Box<dyn Bsdf<D> + Send + Sync + 'a>,
+}
+
+impl<'a, D: Domain + 'a> BoxedMaterial<'a, D> {
+    /// Builds the nodes of a program.
+    ///
+    /// # Panics
+    /// If the program has more than [`MAX_INPUTS`] inputs, which no plan makes.
+    pub fn new(program: &Program) -> Self {
+        assert!(
+            program.inputs.len() <= MAX_INPUTS,
+            "a program has at most {MAX_INPUTS} inputs"
+        );
+        let inputs = program.inputs.iter().map(|input| match &input.source {
+            SourceNode::Color(node) => BoxedInput::Color(node.boxed()),
+            SourceNode::Scalar(node) => BoxedInput::Scalar(node.boxed()),
+        });
+        Self {
+            attributes: program.attributes,
+            inputs: inputs.collect(),
+            normal: program.normal,
+            emission: program.emission,
+            bsdf: program.bsdf.boxed(),
+        }
+    }
+}
+
+impl<D: Domain> Material<D> for BoxedMaterial<'_, D> {
+    #[inline(always)]
+    fn attributes(&self) -> Attributes {
+        self.attributes
+    }
+
+    #[inline(always)]
+    fn shade<'a>(
+        &'a self,
+        d: D,
+        surface: &mut Surface<D>,
+        wo: Vec3<D::F>,
+    ) -> Shading<D::F, impl Bsdf<D> + 'a>
+    where
+        D: 'a,
+    {
+        for (index, input) in self.inputs.iter().enumerate() {
+            surface.inputs[index] = match input {
+                BoxedInput::Color(source) => source.color(d, surface),
+                BoxedInput::Scalar(source) => Vec3::splat(source.scalar(d, surface)),
+            };
+        }
+        if let Some(normal) = self.normal {
+            let scale = normal.scale.scalar(d, surface);
+            let local = decode_normal(d, normal.texel.color(d, surface), scale);
+            *surface = surface.with_normal(d, local, wo);
+        }
+        let emission = self.emission.map(|emission| {
+            let radiance = emission.radiance.color(d, surface);
+            if emission.double_sided {
+                radiance
+            } else {
+                front_only(d, surface, radiance)
+            }
+        });
+        Shading {
+            emission,
+            bsdf: &*self.bsdf,
+        }
+    }
+}
