@@ -3,9 +3,10 @@
 use residual_render::texture::srgb_table;
 
 use crate::desc::{
-    AlphaMode, ColorInput, Filter, LightKind, MaterialDesc, MetallicRoughness, Phong, ScalarInput,
-    SceneDesc, SurfaceDesc, Texels, TextureUse,
+    AlphaMode, ColorInput, Filter, LightKind, MaterialDesc, Phong, ScalarInput, SceneDesc,
+    SurfaceDesc, Texels, TextureUse,
 };
+use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
 use crate::plan::{CullingRule, PlanOptions};
 
@@ -93,22 +94,14 @@ fn change(effect: Effect, material: &mut MaterialDesc, means: &mut Means) {
             material.alpha_mode = AlphaMode::Opaque;
         }
         Effect::Textures => {
-            colors(material).for_each(|input| means.of_color(input));
-            scalars(material).for_each(|input| means.of_scalar(input));
+            for (_, input) in material.surface.inputs_mut() {
+                means.of_input(input);
+            }
         }
         Effect::TextureTransforms => {
-            let clear = |texture: &mut TextureUse| texture.transform = None;
-            let in_colors = colors(material).filter_map(|input| input.texture.as_mut());
-            in_colors.for_each(clear);
-            material.emission.texture.iter_mut().for_each(clear);
-            let in_scalars = scalars(material).filter_map(|input| input.texture.as_mut());
-            in_scalars.for_each(|(texture, _)| clear(texture));
-            if let Some(map) = &mut material.normal_map {
-                clear(&mut map.texture);
-            }
-            if let Some((texture, _)) = &mut material.alpha.texture {
-                clear(texture);
-            }
+            let inputs = material.inputs_mut().into_iter();
+            let textures = inputs.filter_map(|(_, input)| input.texture());
+            textures.for_each(|texture| texture.transform = None);
         }
         _ => change_surface(effect, &mut material.surface),
     }
@@ -159,37 +152,6 @@ fn plain(factor: [f32; 3]) -> ColorInput {
     }
 }
 
-/// The colours of a material's surface.
-fn colors(material: &mut MaterialDesc) -> impl Iterator<Item = &mut ColorInput> {
-    let inputs = match &mut material.surface {
-        SurfaceDesc::MetallicRoughness(MetallicRoughness {
-            base_color,
-            specular_color,
-            ..
-        }) => vec![base_color, specular_color],
-        SurfaceDesc::Phong(Phong {
-            diffuse, specular, ..
-        }) => vec![diffuse, specular],
-        SurfaceDesc::Dielectric { .. } => Vec::new(),
-    };
-    inputs.into_iter()
-}
-
-/// The numbers of a material's surface.
-fn scalars(material: &mut MaterialDesc) -> impl Iterator<Item = &mut ScalarInput> {
-    let inputs = match &mut material.surface {
-        SurfaceDesc::MetallicRoughness(surface) => vec![
-            &mut surface.metallic,
-            &mut surface.roughness,
-            &mut surface.specular,
-            &mut surface.transmission,
-        ],
-        SurfaceDesc::Phong(surface) => vec![&mut surface.exponent],
-        SurfaceDesc::Dielectric { .. } => Vec::new(),
-    };
-    inputs.into_iter()
-}
-
 /// Mean texels of images: linear, and with red, green and blue decoded from sRGB.
 struct Means {
     of_textures: Vec<[[f32; 4]; 2]>,
@@ -210,6 +172,14 @@ impl Means {
 
     fn of(&self, texture: &TextureUse) -> [[f32; 4]; 2] {
         self.of_textures[texture.texture]
+    }
+
+    fn of_input(&mut self, input: InputMut<'_>) {
+        match input {
+            MaterialInput::Color(input) => self.of_color(input),
+            MaterialInput::Scalar(input) => self.of_scalar(input),
+            MaterialInput::Normal(_) => {}
+        }
     }
 
     fn of_color(&mut self, input: &mut ColorInput) {

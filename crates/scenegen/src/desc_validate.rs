@@ -1,10 +1,10 @@
 //! The invariants of [`SceneDesc`], checked.
 
 use crate::desc::{
-    AlphaMode, CameraDesc, ColorInput, LightDesc, LightKind, MaterialDesc, MeshDesc, Projection,
-    ScalarInput, SceneDesc, SurfaceDesc, Texels,
+    AlphaMode, CameraDesc, LightDesc, LightKind, MaterialDesc, MeshDesc, Projection, SceneDesc,
+    SurfaceDesc, Texels,
 };
-use crate::import::texture_uses::texture_uses;
+use crate::desc_inputs::MaterialInput;
 
 /// A broken invariant.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -106,61 +106,40 @@ impl SceneDesc {
 
     fn check_material(&self, i: usize, material: &MaterialDesc) -> Check {
         let place = |field: &str| format!("materials[{i}].{field}");
-        let colors: Vec<(&str, &ColorInput)>;
-        let scalars: Vec<(&str, &ScalarInput)>;
         match &material.surface {
             SurfaceDesc::MetallicRoughness(surface) => {
-                colors = vec![
-                    ("base_color", &surface.base_color),
-                    ("specular_color", &surface.specular_color),
-                ];
-                scalars = vec![
-                    ("metallic", &surface.metallic),
-                    ("roughness", &surface.roughness),
-                    ("specular", &surface.specular),
-                    ("transmission", &surface.transmission),
-                ];
                 let is_valid =
                     surface.ior.is_finite() && (surface.ior == 0.0 || surface.ior >= 1.0);
                 require(is_valid, || place("ior"), "is neither 0 nor at least 1")?;
             }
-            SurfaceDesc::Phong(phong) => {
-                colors = vec![("diffuse", &phong.diffuse), ("specular", &phong.specular)];
-                scalars = vec![("exponent", &phong.exponent)];
-            }
+            SurfaceDesc::Phong(_) => {}
             SurfaceDesc::Dielectric { ior, transmittance } => {
-                colors = Vec::new();
-                scalars = Vec::new();
                 require(
                     ior.is_finite() && *ior > 0.0,
                     || place("ior"),
                     "is not positive",
                 )?;
-                let is_valid = transmittance
-                    .iter()
-                    .all(|value| value.is_finite() && *value >= 0.0);
-                require(
-                    is_valid,
-                    || place("transmittance"),
-                    "is not finite and non-negative",
-                )?;
+                require_color(transmittance, || place("transmittance"))?;
             }
         }
-        for (name, color) in colors.into_iter().chain([("emission", &material.emission)]) {
-            let is_valid = color
-                .factor
-                .iter()
-                .all(|value| value.is_finite() && *value >= 0.0);
-            require(is_valid, || place(name), "is not finite and non-negative")?;
-        }
-        for (name, scalar) in scalars.into_iter().chain([("alpha", &material.alpha)]) {
-            require(
-                scalar.factor.is_finite() && scalar.factor >= 0.0,
-                || place(name),
-                "is not finite and non-negative",
-            )?;
-            let channel = scalar.texture.as_ref().map_or(0, |(_, channel)| *channel);
-            require(channel < 4, || place(name), "reads a channel beyond alpha")?;
+        for (name, input) in material.inputs() {
+            match input {
+                MaterialInput::Color(color) => require_color(&color.factor, || place(name))?,
+                MaterialInput::Scalar(scalar) => {
+                    require(
+                        scalar.factor.is_finite() && scalar.factor >= 0.0,
+                        || place(name),
+                        "is not finite and non-negative",
+                    )?;
+                    let channel = scalar.texture.as_ref().map_or(0, |(_, channel)| *channel);
+                    require(channel < 4, || place(name), "reads a channel beyond alpha")?;
+                }
+                MaterialInput::Normal(map) => require(
+                    map.scale.is_finite(),
+                    || place(name),
+                    "has a non-finite scale",
+                )?,
+            }
         }
         if let AlphaMode::Mask(cutoff) = material.alpha_mode {
             require(
@@ -169,13 +148,7 @@ impl SceneDesc {
                 "has a non-finite cutoff",
             )?;
         }
-        let scale = material.normal_map.as_ref().map_or(1.0, |map| map.scale);
-        require(
-            scale.is_finite(),
-            || place("normal_map"),
-            "has a non-finite scale",
-        )?;
-        for texture in texture_uses(material) {
+        for texture in material.textures() {
             require(
                 texture.texture < self.textures.len(),
                 || place("textures"),
@@ -266,6 +239,11 @@ impl SceneDesc {
             .all(|&corner| (corner as usize) < count);
         require(in_range, || place("triangles"), "an index is out of range")
     }
+}
+
+fn require_color(color: &[f32; 3], place: impl FnOnce() -> String) -> Check {
+    let is_valid = color.iter().all(|value| value.is_finite() && *value >= 0.0);
+    require(is_valid, place, "is not finite and non-negative")
 }
 
 fn is_unit(length_squared: f32) -> bool {

@@ -3,6 +3,7 @@
 pub mod ablation;
 pub mod build_script;
 pub mod desc;
+pub mod desc_inputs;
 mod desc_validate;
 mod effect;
 pub mod effects;

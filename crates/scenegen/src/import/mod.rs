@@ -28,9 +28,9 @@ mod guard;
 mod images;
 mod instances;
 mod mesh;
+mod missing_uvs;
 mod obj;
 mod options;
-pub(crate) mod texture_uses;
 mod warnings;
 
 pub use error::ImportError;

@@ -5,7 +5,7 @@ use super::{normals, tangents};
 use crate::desc::{MaterialDesc, MeshDesc};
 use crate::import::budget::Budget;
 use crate::import::error::Fault;
-use crate::import::texture_uses;
+use crate::import::missing_uvs;
 use crate::import::warnings::Warnings;
 
 /// Bytes of a vertex: position, normal, two texture coordinates, colour.
@@ -23,7 +23,7 @@ pub(in crate::import) fn finish(
     budget: &mut Budget,
     warnings: &mut Warnings,
 ) -> Result<Option<MeshDesc>, Fault> {
-    texture_uses::warn_about_missing_uvs(material, &raw.uvs, place, warnings);
+    missing_uvs::warn_about_missing_uvs(material, &raw.uvs, place, warnings);
     raw.drop_non_finite(place, warnings);
     if raw.triangles.is_empty() {
         warnings.push(place, "has no triangles and is skipped");
