@@ -201,6 +201,10 @@ fn surfaces() -> Vec<Tiny> {
             exponent: scalar(20.0),
         })
     };
+    let mirror = |diffuse| SurfaceDesc::Mirror {
+        diffuse: color(diffuse),
+        reflectance: color([0.5, 0.4, 0.3]),
+    };
     let ball = || [sphere([0.0, 0.0, 0.2], 0.7)];
     let [wall, floor] = corner();
     vec![
@@ -251,6 +255,16 @@ fn surfaces() -> Vec<Tiny> {
             &[Effect::PhongReflection],
             &diffuse,
             scene(material("sheen", phong([0.0; 3])), corner()),
+        ),
+        Tiny::new("mirror", &[Effect::MirrorReflection], &[], {
+            let pane = sheet([-0.6, -0.5, 0.8], [1.1, 0.0, 0.2], [0.0, 0.9, 0.0]);
+            behind(material("mirror", mirror([0.0; 3])), [pane])
+        }),
+        Tiny::new(
+            "diffuse_and_mirror",
+            &[Effect::MirrorReflection, Effect::MixedLobes],
+            &[],
+            scene(material("lacquer", mirror([0.2, 0.4, 0.3])), corner()),
         ),
         Tiny::new(
             "diffuse_and_phong",

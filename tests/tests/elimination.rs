@@ -42,6 +42,7 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("CoatedDiffuse {", &[Effect::DielectricCoat]),
     ("Conductor {", &[Effect::MetallicReflection]),
     ("Phong {", &[Effect::PhongReflection]),
+    ("Mirror {", &[Effect::MirrorReflection]),
     (
         "Dielectric",
         &[Effect::Refraction, Effect::ThinTransmission],
@@ -83,6 +84,7 @@ const SOURCES: &[(&str, &[Effect])] = &[
         &[Effect::DielectricCoat, Effect::MetallicReflection],
     ),
     ("render/src/bsdf/phong.rs", &[Effect::PhongReflection]),
+    ("render/src/bsdf/mirror.rs", &[Effect::MirrorReflection]),
     ("render/src/bsdf/combine.rs", &[Effect::MixedLobes]),
     ("render/src/light/area.rs", &[Effect::EmittingSurfaces]),
     (
@@ -176,6 +178,7 @@ fn renderers_contain_what_scenes_call_for() {
     for (name, functions) in [
         ("alpha_mask", &["texture::image", "alpha_test"][..]),
         ("diffuse_and_phong", &["bsdf::phong", "bsdf::combine"]),
+        ("diffuse_and_mirror", &["bsdf::mirror"]),
         ("environment", &["light::environment"]),
         ("mixed_metal", &["bsdf::microfacet", "bsdf::coated_diffuse"]),
         ("solid_glass", &["bsdf::dielectric"]),
@@ -201,6 +204,7 @@ const NOT_IN_CORNELL: &[&str] = &[
     "bsdf::microfacet",
     "bsdf::coated_diffuse",
     "bsdf::phong",
+    "bsdf::mirror",
     "bsdf::combine",
     "decode_normal",
     "bvh::instances",

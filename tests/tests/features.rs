@@ -219,6 +219,13 @@ const PLACES: &[(Effect, Place)] = &[
         };
         material("Ks", SurfaceDesc::Phong(surface))
     }),
+    (Effect::MirrorReflection, |factor, texture| {
+        let surface = SurfaceDesc::Mirror {
+            diffuse: color([0.5; 3]),
+            reflectance: colors(factor, texture),
+        };
+        material("Ks of a mirror", surface)
+    }),
     (Effect::EmittingSurfaces, |factor, texture| MaterialDesc {
         emission: colors(factor, texture),
         ..material("emission", matte([0.5; 3]))

@@ -38,6 +38,7 @@ goldens! {
     clamp_wrap
     constants
     culling
+    diffuse_and_mirror
     diffuse_and_phong
     directional_light
     emission
@@ -48,6 +49,7 @@ goldens! {
     linear_texels
     matte
     metal
+    mirror
     mirror_wrap
     mixed_metal
     nearest_filter

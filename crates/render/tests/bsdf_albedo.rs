@@ -2,7 +2,8 @@
 //! Denoise asks for where it is not.
 
 use residual_render::bsdf::{
-    Black, Bsdf, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mix, Phong, Solid, Sum, Thin,
+    Black, Bsdf, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mirror, Mix, Phong, Solid, Sum,
+    Thin,
 };
 use residual_render::domain::Precise;
 use residual_render::math::Vec3;
@@ -104,6 +105,16 @@ fn diffuse_surfaces_and_their_blends_have_their_directional_albedo() {
         assert_near("mix", albedo(&mix, cos), integral(&mix, cos), 1e-6);
         assert_near("sum", albedo(&sum, cos), integral(&sum, cos), 1e-6);
         assert_eq!(albedo(&Black, cos), [0.0; 3]);
+        let mirror = Mirror {
+            reflectance: ORANGE,
+        };
+        assert_eq!(albedo(&mirror, cos), colors(ORANGE.0));
+        assert_near(
+            "mirror",
+            albedo(&mirror, cos),
+            mean_weight(&mirror, cos),
+            1e-9,
+        );
     }
     // The integral does see a wrong albedo.
     let [r, ..] = integral(&b, 1.0);
@@ -204,6 +215,7 @@ fn albedos_are_between_0_and_1() {
             exponent: Const(20.0),
         };
         check("diffuse", &diffuse);
+        check("mirror", &Mirror { reflectance: color });
         check("phong", &phong);
         let glass = Dielectric {
             transmittance: color,

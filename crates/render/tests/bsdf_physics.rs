@@ -2,8 +2,8 @@
 //! be anything but finite (M-15). And what smooth dielectrics do.
 
 use residual_render::bsdf::{
-    Black, Bsdf, BsdfSample, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mix, Phong, Solid, Sum,
-    Thin,
+    Black, Bsdf, BsdfSample, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mirror, Mix, Phong,
+    Solid, Sum, Thin,
 };
 use residual_render::domain::{Buffers, Scalar};
 use residual_render::math::Vec3;
@@ -136,6 +136,40 @@ fn furnace_of_coated_surfaces() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn mirrors_reflect_their_reflectance_into_the_mirrored_direction() {
+    let data = scene(&[FLOOR]);
+    let buffers = data.buffers();
+    let d = Scalar::new(&buffers);
+    let surface = floor(d);
+    let mirror = Mirror {
+        reflectance: Const([0.9, 0.5, 0.1]),
+    };
+    for cos in [1.0, 0.8, 0.5, 0.2, 0.05, 1e-4] {
+        let wo = view(cos, 0.7);
+        let sample = mirror.sample(d, &surface, wo, [0.3, 0.6, 0.9]);
+        assert_eq!(sample.wi, vec3(-wo.x, -wo.y, wo.z));
+        assert_eq!(sample.weight, vec3(0.9, 0.5, 0.1));
+        assert_eq!((sample.pdf, sample.delta), (0.0, true));
+        let value = mirror.eval(d, &surface, wo, sample.wi);
+        assert_eq!((value.value.x, value.pdf), (0.0, 0.0));
+    }
+    // White mirrors lose nothing, alone or beside a diffuse lobe.
+    let half = Const([0.5; 3]);
+    let sum = Sum {
+        a: Diffuse { albedo: half },
+        b: Mirror { reflectance: half },
+        probability: Const(0.3),
+    };
+    for (_, albedo) in albedos(&Mirror { reflectance: WHITE }) {
+        assert_eq!((albedo.value(), albedo.error()), (1.0, 0.0));
+    }
+    for (cos, albedo) in albedos(&sum) {
+        let error = (albedo.value() - 1.0).abs();
+        assert!(error <= 4.0 * albedo.error() + 1e-6, "{cos}: {error}");
     }
 }
 
@@ -358,6 +392,7 @@ fn degenerate_directions_give_finite_values() {
         check("phong", &phong(exponent));
     }
     check("diffuse", &Diffuse { albedo: WHITE });
+    check("mirror", &Mirror { reflectance: WHITE });
     check(
         "solid",
         &Dielectric {

@@ -2,7 +2,8 @@
 
 use fearless_simd::{Level, dispatch};
 use residual_render::bsdf::{
-    Bsdf, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mix, Phong, Solid, Sum, Thin, fresnel,
+    Bsdf, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mirror, Mix, Phong, Solid, Sum, Thin,
+    fresnel,
 };
 use residual_render::domain::{
     Buffer, Domain, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, One, Scalar,
@@ -411,6 +412,7 @@ fn bsdfs_agree() {
         "solid" Dielectric { transmittance: RED, ior: Const(1.5), interface: Solid };
         "thin" Dielectric { transmittance: RED, ior: Const(1.33), interface: Thin };
         "phong" Phong { color: RED, exponent: Const(40.0) };
+        "mirror" Mirror { reflectance: RED };
         "mix" Mix { a: Diffuse { albedo: RED }, b: Dielectric { transmittance: RED, ior: Const(1.5), interface: Solid }, weight: Const(0.4) };
         "sum" Sum {
             a: Diffuse { albedo: RED },

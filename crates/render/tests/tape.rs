@@ -242,6 +242,9 @@ fn bsdfs() -> Vec<BsdfNode> {
         color: second,
         exponent: fifth,
     };
+    let mirror = BsdfNode::Mirror {
+        reflectance: second,
+    };
     let mix = |a: &BsdfNode, b: &BsdfNode| BsdfNode::Mix {
         a: Box::new(a.clone()),
         b: Box::new(b.clone()),
@@ -260,6 +263,8 @@ fn bsdfs() -> Vec<BsdfNode> {
         glass(AnyInterface::Solid),
         glass(AnyInterface::Thin),
         phong.clone(),
+        mirror.clone(),
+        sum(&diffuse, &mirror),
         mix(&coated, &conductor),
         mix(&coated, &glass(AnyInterface::Thin)),
         mix(&glass(AnyInterface::Solid), &glass(AnyInterface::Thin)),

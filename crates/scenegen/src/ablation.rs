@@ -16,7 +16,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
     Some(match effect {
         Effect::DielectricCoat => "matte",
         Effect::MetallicReflection => "matte, of the same colour",
-        Effect::PhongReflection => "matte",
+        Effect::PhongReflection | Effect::MirrorReflection => "matte",
         Effect::ThinTransmission | Effect::Refraction => "opaque",
         Effect::Textures => "their mean values; alpha, normal maps and emission stay",
         Effect::BilinearFilter => "the nearest texel",
@@ -126,6 +126,9 @@ fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
         ) => surface.transmission = number(0.0),
         (Effect::PhongReflection, SurfaceDesc::Phong(surface)) => {
             surface.specular = plain([0.0; 3]);
+        }
+        (Effect::MirrorReflection, SurfaceDesc::Mirror { reflectance, .. }) => {
+            *reflectance = plain([0.0; 3]);
         }
         (Effect::Refraction, SurfaceDesc::Dielectric { transmittance, .. }) => {
             *surface = SurfaceDesc::Phong(Phong {

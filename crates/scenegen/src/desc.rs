@@ -206,6 +206,13 @@ pub enum SurfaceDesc {
     MetallicRoughness(MetallicRoughness),
     /// OBJ: Lambert plus normalised Phong.
     Phong(Phong),
+    /// OBJ `illum` 3, 5, 8: Lambert plus a perfect mirror. The two reflect no more than arrives.
+    Mirror {
+        /// `Kd`.
+        diffuse: ColorInput,
+        /// `Ks`.
+        reflectance: ColorInput,
+    },
     /// OBJ `illum` 4, 6, 7, 9 or `Tf`/`d` with refraction: a smooth dielectric.
     Dielectric {
         /// Index of refraction.

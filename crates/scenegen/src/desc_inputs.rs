@@ -52,6 +52,13 @@ macro_rules! surface_inputs {
                 ("specular", Color(specular)),
                 ("exponent", Scalar(exponent)),
             ],
+            SurfaceDesc::Mirror {
+                diffuse,
+                reflectance,
+            } => vec![
+                ("diffuse", Color(diffuse)),
+                ("reflectance", Color(reflectance)),
+            ],
             SurfaceDesc::Dielectric {
                 ior: _,
                 transmittance: _,

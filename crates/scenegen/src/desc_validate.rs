@@ -112,7 +112,7 @@ impl SceneDesc {
                     surface.ior.is_finite() && (surface.ior == 0.0 || surface.ior >= 1.0);
                 require(is_valid, || place("ior"), "is neither 0 nor at least 1")?;
             }
-            SurfaceDesc::Phong(_) => {}
+            SurfaceDesc::Phong(_) | SurfaceDesc::Mirror { .. } => {}
             SurfaceDesc::Dielectric { ior, transmittance } => {
                 require(
                     ior.is_finite() && *ior > 0.0,

@@ -28,6 +28,7 @@ effects! {
     DielectricCoat = "dielectric coat",
     MetallicReflection = "metallic reflection",
     PhongReflection = "Phong reflection",
+    MirrorReflection = "mirror reflection",
     ThinTransmission = "thin transmission",
     Refraction = "refraction",
     MixedLobes = "mixed lobes",

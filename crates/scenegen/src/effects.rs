@@ -171,6 +171,7 @@ fn bsdf_effects(bsdf: &BsdfNode) -> &'static [Effect] {
             AnyInterface::Thin => &[Effect::ThinTransmission],
         },
         BsdfNode::Phong { .. } => &[Effect::PhongReflection],
+        BsdfNode::Mirror { .. } => &[Effect::MirrorReflection],
         BsdfNode::Mix { .. } | BsdfNode::Sum { .. } => &[Effect::MixedLobes],
     }
 }

@@ -33,7 +33,9 @@ fn square_with(material: Value) -> Gltf {
 fn surface(material: &MaterialDesc) -> &MetallicRoughness {
     match &material.surface {
         SurfaceDesc::MetallicRoughness(surface) => surface,
-        SurfaceDesc::Phong(_) | SurfaceDesc::Dielectric { .. } => panic!("{material:?}"),
+        SurfaceDesc::Phong(_) | SurfaceDesc::Mirror { .. } | SurfaceDesc::Dielectric { .. } => {
+            panic!("{material:?}")
+        }
     }
 }
 

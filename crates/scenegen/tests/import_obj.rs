@@ -113,6 +113,41 @@ fn illum_below_2_has_no_highlight() {
     }
 }
 
+#[test]
+fn illum_with_reflection_is_a_mirror() {
+    for illum in [3, 5, 8] {
+        let statements = format!("Kd 0.1 0.2 0.3\nKs 0.4 0.5 0.6\nNs 40\nillum {illum}");
+        let (material, scene) = material(&statements);
+        let SurfaceDesc::Mirror {
+            diffuse,
+            reflectance,
+        } = &material.surface
+        else {
+            panic!("{material:?}")
+        };
+        assert_eq!(diffuse.factor, [0.1, 0.2, 0.3]);
+        assert_eq!(reflectance.factor, [0.4, 0.5, 0.6]);
+        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    }
+}
+
+/// What MTL adds may reflect more than arrives.
+#[test]
+fn mirrors_conserve_energy() {
+    let (material, scene) = material("Kd 0.5 0.5 1\nKs 1 0 1\nmap_Ks ks.png\nillum 3");
+    let SurfaceDesc::Mirror {
+        diffuse,
+        reflectance,
+    } = &material.surface
+    else {
+        panic!("{material:?}")
+    };
+    assert_eq!(diffuse.factor, [0.25, 0.25, 0.5]);
+    assert_eq!(reflectance.factor, [0.5, 0.0, 0.5]);
+    assert!(reflectance.texture.is_some());
+    assert!(warns(&scene, "reflect 2 times what arrives"));
+}
+
 /// Rodent registered map_Ks as map_Kd.
 #[test]
 fn specular_maps_are_not_diffuse_maps() {

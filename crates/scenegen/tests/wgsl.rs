@@ -186,6 +186,9 @@ fn bsdfs() -> Vec<BsdfNode> {
         glass(AnyInterface::Solid),
         glass(AnyInterface::Thin),
         phong.clone(),
+        BsdfNode::Mirror {
+            reflectance: second,
+        },
         BsdfNode::Mix {
             a,
             b,

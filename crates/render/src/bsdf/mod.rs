@@ -12,6 +12,7 @@ mod combine;
 mod dielectric;
 mod diffuse;
 pub mod microfacet;
+mod mirror;
 mod phong;
 
 pub use coated_diffuse::CoatedDiffuse;
@@ -19,6 +20,7 @@ pub use combine::{Mix, Sum};
 pub use dielectric::{AnyInterface, Dielectric, Interface, Solid, Thin, fresnel};
 pub use diffuse::{Black, Diffuse};
 pub use microfacet::Conductor;
+pub use mirror::Mirror;
 pub use phong::Phong;
 
 use crate::domain::{Bundle, Domain};

@@ -25,6 +25,7 @@ nodes! {
         CoatedDiffuse { albedo: Input, roughness: Input, reflectance: Input, grazing: Input },
         Dielectric { transmittance: Input, ior: Input, interface: AnyInterface },
         Phong { color: Input, exponent: Input },
+        Mirror { reflectance: Input },
         Mix { a: Box<BsdfNode>, b: Box<BsdfNode>, weight: Input },
         Sum { a: Box<BsdfNode>, b: Box<BsdfNode>, probability: Input },
     }

@@ -4,7 +4,7 @@ use residual_render::bsdf::AnyInterface;
 use residual_render::program::{BsdfNode, ColorNode, ScalarNode};
 
 use super::program::{Builder, is_black};
-use crate::desc::{MetallicRoughness, Phong, SurfaceDesc, Warning, WarningKind};
+use crate::desc::{ColorInput, MetallicRoughness, Phong, SurfaceDesc, Warning, WarningKind};
 use crate::effect::Effect;
 
 impl Builder<'_> {
@@ -13,6 +13,10 @@ impl Builder<'_> {
         match surface {
             SurfaceDesc::MetallicRoughness(surface) => self.metallic_roughness(surface),
             SurfaceDesc::Phong(surface) => self.phong(surface),
+            SurfaceDesc::Mirror {
+                diffuse,
+                reflectance,
+            } => self.mirror(diffuse, reflectance),
             SurfaceDesc::Dielectric { ior, transmittance } => {
                 let tint = self.sources.constant_color(*transmittance);
                 self.dielectric(tint, *ior, AnyInterface::Solid)
@@ -141,12 +145,35 @@ impl Builder<'_> {
             color: self.color("specular", specular),
             exponent: self.scalar("exponent", exponent),
         };
+        self.sum(diffuse, lobe, &surface.diffuse, &surface.specular)
+    }
+
+    fn mirror(&mut self, diffuse: &ColorInput, reflectance: &ColorInput) -> BsdfNode {
+        let albedo = self.sources.tinted_color(diffuse);
+        let color = self.sources.color(reflectance);
+        let base = self.diffuse(albedo);
+        if is_black(&color) {
+            return base;
+        }
+        let lobe = BsdfNode::Mirror {
+            reflectance: self.color("reflectance", color),
+        };
+        self.sum(base, lobe, diffuse, reflectance)
+    }
+
+    /// A lobe added to a diffuse one, which is sampled in proportion to their colours.
+    fn sum(
+        &mut self,
+        diffuse: BsdfNode,
+        lobe: BsdfNode,
+        albedo: &ColorInput,
+        specular: &ColorInput,
+    ) -> BsdfNode {
         if diffuse == BsdfNode::Black {
             return lobe;
         }
-        let weight = |factor: [f32; 3]| factor.iter().sum::<f32>();
-        let share = weight(surface.specular.factor)
-            / (weight(surface.specular.factor) + weight(surface.diffuse.factor));
+        let [albedo, specular] = [albedo, specular].map(|input| input.factor.iter().sum::<f32>());
+        let share = specular / (specular + albedo);
         let probability = self.sources.number(share.clamp(0.1, 0.9));
         BsdfNode::Sum {
             a: Box::new(diffuse),

@@ -20,6 +20,8 @@ enum Illumination {
     Diffuse,
     /// 2, and those whose difference from it is not rendered.
     Highlight,
+    /// 3, 5 and 8, "reflection on".
+    Reflection,
     /// 4, "transparency: glass".
     Glass,
     /// 6, 7 and 9.
@@ -30,6 +32,8 @@ impl Illumination {
     fn new(illum: f32) -> Self {
         if illum < 2.0 {
             Self::Diffuse
+        } else if [3.0, 5.0, 8.0].contains(&illum) {
+            Self::Reflection
         } else if illum == 4.0 {
             Self::Glass
         } else if [6.0, 7.0, 9.0].contains(&illum) {
@@ -68,7 +72,7 @@ impl Reader<'_, '_> {
             // Maya and others write `illum 4`, `Ni 1` and `d 1` for every opaque material.
             Illumination::Glass => opacity < 1.0 || refracts,
             Illumination::Refraction => true,
-            Illumination::Diffuse | Illumination::Highlight => {
+            Illumination::Diffuse | Illumination::Highlight | Illumination::Reflection => {
                 opacity < 1.0 && refracts && alpha_map.is_none()
             }
         };
@@ -77,6 +81,8 @@ impl Reader<'_, '_> {
                 ior: self.valid_ior(ior),
                 transmittance: self.statements.color("tf").unwrap_or([1.0; 3]),
             }
+        } else if illumination == Illumination::Reflection {
+            self.mirror(diffuse)
         } else {
             SurfaceDesc::Phong(self.phong(diffuse, illumination))
         };
@@ -112,6 +118,25 @@ impl Reader<'_, '_> {
                 _ => specular,
             },
             exponent: ScalarInput { factor, texture },
+        }
+    }
+
+    /// What `Ks` is the colour of comes from the mirrored direction.
+    fn mirror(&mut self, mut diffuse: ColorInput) -> SurfaceDesc {
+        let mut reflectance = self.color("ks", "map_ks", 0.0);
+        let sums = [0, 1, 2].map(|k| diffuse.factor[k] + reflectance.factor[k]);
+        let largest = sums.into_iter().fold(0.0, f32::max);
+        if largest > 1.0 {
+            self.statements.warn(format!(
+                "Kd and Ks reflect {largest} times what arrives; both are divided by that"
+            ));
+            for factor in [&mut diffuse.factor, &mut reflectance.factor] {
+                *factor = factor.map(|value| value / largest);
+            }
+        }
+        SurfaceDesc::Mirror {
+            diffuse,
+            reflectance,
         }
     }
 
