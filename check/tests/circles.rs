@@ -287,10 +287,7 @@ fn no_circle() {
                     "mod b;\nmod c;\npub use b::B;\nuse c::C;\nfn f(_: C) {}",
                 ),
                 ("a/b.rs", "pub struct B;"),
-                (
-                    "a/c.rs",
-                    "use super::B;\nuse crate::*;\npub struct C(B);",
-                ),
+                ("a/c.rs", "use super::B;\nuse crate::*;\npub struct C(B);"),
             ],
         ),
         (
