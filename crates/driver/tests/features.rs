@@ -1,0 +1,37 @@
+//! What is built around emitted code is linked with the crates that the command line was built with. Cargo builds a crate
+//! again where other features are asked for, of itself or of anything below it: minutes, before the first scene is compiled.
+
+use std::collections::BTreeSet;
+
+use residual_driver::cargo;
+
+/// All that a package is built from, each with its version and features, as cargo resolves them for this package alone.
+fn built_from(package: &str) -> BTreeSet<String> {
+    let output = cargo::command()
+        .args(["tree", "--offline", "--package", package])
+        .args(["--edges", "normal,build", "--prefix", "none"])
+        .args(["--format", "{p} with features {f}"])
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{message}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let lines = text.lines().map(|line| line.trim_end_matches(" (*)"));
+    lines.map(|line| line.trim_end().to_owned()).collect()
+}
+
+#[test]
+fn what_is_built_around_emitted_code_has_nothing_else_built_again() {
+    for around in ["residual-compiled-scene", "residual-standalone"] {
+        let needed = built_from(around);
+        assert!(needed.len() > 10, "{needed:?}");
+        for program in ["xtask", "residual-tests"] {
+            let program = built_from(program);
+            let again: Vec<_> = needed.difference(&program).collect();
+            let [only] = again[..] else {
+                panic!("{again:#?}")
+            };
+            assert!(only.starts_with(&format!("{around} ")), "{only}");
+        }
+    }
+}
