@@ -6,7 +6,7 @@ use crate::record::record;
 use crate::scene_data::SceneData;
 use crate::surface::Ray;
 
-/// A camera: turns places on the film into rays.
+/// A camera: turns points of the film into rays.
 pub trait Camera<D: Domain> {
     /// The ray through film coordinates in [−1, 1], x to the right, y up. Its direction is a unit vector.
     fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D>;

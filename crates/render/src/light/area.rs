@@ -13,7 +13,7 @@ record! {
     /// An emitting triangle.
     pub struct AreaRecord {
         row {
-            /// The position of its kind in the scene's list of kinds.
+            /// Index of its kind in the scene's list of kinds.
             kind: word,
             /// Index of the triangle.
             triangle: word,

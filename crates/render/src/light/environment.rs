@@ -53,7 +53,7 @@ const PI: f64 = std::f64::consts::PI;
 impl<D: Domain> EnvironmentHeader<D> {
     /// Coordinates in the image of a unit direction, and the sine of the angle to +Y.
     #[inline(always)]
-    fn to_image(&self, d: D, dir: Vec3<D::F>) -> ([D::F; 2], D::F) {
+    fn image_point(&self, d: D, dir: Vec3<D::F>) -> ([D::F; 2], D::F) {
         let (cos, sin) = (self.cos, self.sin);
         let (x, z) = (dir.x * cos - dir.z * sin, d.fma(dir.x, sin, dir.z * cos));
         let sin_theta = d.sqrt(d.fma(x, x, z * z));
@@ -64,7 +64,7 @@ impl<D: Domain> EnvironmentHeader<D> {
 
     /// The unit direction of image coordinates, and the sine of its angle to +Y.
     #[inline(always)]
-    fn to_direction(&self, d: D, [u, v]: [D::F; 2]) -> (Vec3<D::F>, D::F) {
+    fn direction(&self, d: D, [u, v]: [D::F; 2]) -> (Vec3<D::F>, D::F) {
         let (cos, sin) = (self.cos, self.sin);
         let (sin_phi, cos_phi) = sincos_turns(d, u - d.lit(0.5));
         let (sin_theta, cos_theta) = sincos_turns(d, v * d.lit(0.5));
@@ -127,16 +127,16 @@ impl<D: Domain> LightKind<D> for Environment {
         let slot = d.to_uint(row) * header.width + d.to_uint(column);
         let (texel, density) = TEXELS.resolve(d, slot, u[2]);
         let (row, column) = row_and_column(d, texel, header.width);
-        let place = [
+        let uv = [
             (column + (x - d.floor(x))) / columns,
             (row + (y - d.floor(y))) / rows,
         ];
-        let (wi, sin_theta) = header.to_direction(d, place);
+        let (wi, sin_theta) = header.direction(d, uv);
         LightSample {
             wi,
             position: wi,
             infinite: d.truth(true),
-            radiance: header.radiance(d, place),
+            radiance: header.radiance(d, uv),
             pdf: solid_angle_pdf(d, density, sin_theta),
             delta: d.truth(false),
         }
@@ -145,14 +145,14 @@ impl<D: Domain> LightKind<D> for Environment {
     #[inline(always)]
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
         let header = EnvironmentHeader::uniform(d);
-        let (place, sin_theta) = header.to_image(d, dir);
+        let (uv, sin_theta) = header.image_point(d, dir);
         let [columns, rows] = header.size(d);
-        let column = d.to_uint(Clamp.wrap(d, d.floor(place[0] * columns), columns));
-        let row = d.to_uint(Clamp.wrap(d, d.floor(place[1] * rows), rows));
+        let column = d.to_uint(Clamp.wrap(d, d.floor(uv[0] * columns), columns));
+        let row = d.to_uint(Clamp.wrap(d, d.floor(uv[1] * rows), rows));
         let pick = pick_probability(d, header.light);
         let density = TEXELS.density(d, row * header.width + column);
         Some(Background {
-            radiance: header.radiance(d, place),
+            radiance: header.radiance(d, uv),
             pdf: solid_angle_pdf(d, density, sin_theta) * pick,
         })
     }

@@ -25,7 +25,7 @@ use crate::triangle::NO_LIGHT;
 pub struct LightSample<D: Domain> {
     /// Unit direction towards the light.
     pub wi: Vec3<D::F>,
-    /// The place it comes from; unused where `infinite`.
+    /// The point it comes from; unused where `infinite`.
     pub position: Vec3<D::F>,
     /// It comes from infinitely far away.
     pub infinite: D::M,
@@ -77,14 +77,14 @@ pub trait LightKind<D: Domain> {
     }
 }
 
-/// The kind wanted from a list, or from the rest of one that starts at position `first` of the whole.
+/// The index of the kind wanted from a list, or from the rest of one that starts at position `first` of the whole.
 #[derive(Clone, Copy, Debug)]
-pub struct KindNumber<U> {
+pub struct KindIndex<U> {
     kind: U,
     first: u32,
 }
 
-impl<U: crate::domain::Unsigned> KindNumber<U> {
+impl<U: crate::domain::Unsigned> KindIndex<U> {
     #[inline(always)]
     fn is_first<D: Domain<U = U>>(self, d: D) -> D::M {
         d.eq_u(self.kind, d.uint(self.first))
@@ -102,22 +102,22 @@ impl<U: crate::domain::Unsigned> KindNumber<U> {
 pub trait LightKinds<D: Domain> {
     /// There are no lights at all.
     fn is_empty(&self) -> bool;
-    /// Samples a light whose kind's number is `kind`.
+    /// Samples a light of kind `kind`.
     fn sample(
         &self,
         d: D,
-        kind: KindNumber<D::U>,
+        kind: KindIndex<D::U>,
         record: D::U,
         from: Vec3<D::F>,
         u: [D::F; 3],
     ) -> LightSample<D>;
     /// The background of the first kind that has one.
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>>;
-    /// [`LightKind::density`] of a light whose kind's number is `kind`; `None` if no ray can meet any kind.
+    /// [`LightKind::density`] of a light of kind `kind`; `None` if no ray can meet any kind.
     fn density(
         &self,
         d: D,
-        kind: KindNumber<D::U>,
+        kind: KindIndex<D::U>,
         record: D::U,
         ray: &Ray<D>,
         seen: &Surface<D>,
@@ -128,7 +128,7 @@ pub trait LightKinds<D: Domain> {
 #[inline(always)]
 fn either_density<D: Domain>(
     d: D,
-    kind: KindNumber<D::U>,
+    kind: KindIndex<D::U>,
     first: Option<D::F>,
     rest: Option<D::F>,
 ) -> Option<D::F> {
@@ -147,7 +147,7 @@ impl<D: Domain> LightKinds<D> for () {
     fn sample(
         &self,
         d: D,
-        _: KindNumber<D::U>,
+        _: KindIndex<D::U>,
         _: D::U,
         _: Vec3<D::F>,
         _: [D::F; 3],
@@ -170,7 +170,7 @@ impl<D: Domain> LightKinds<D> for () {
     fn density(
         &self,
         _: D,
-        _: KindNumber<D::U>,
+        _: KindIndex<D::U>,
         _: D::U,
         _: &Ray<D>,
         _: &Surface<D>,
@@ -188,7 +188,7 @@ impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
     fn sample(
         &self,
         d: D,
-        kind: KindNumber<D::U>,
+        kind: KindIndex<D::U>,
         record: D::U,
         from: Vec3<D::F>,
         u: [D::F; 3],
@@ -213,7 +213,7 @@ impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
     fn density(
         &self,
         d: D,
-        kind: KindNumber<D::U>,
+        kind: KindIndex<D::U>,
         record: D::U,
         ray: &Ray<D>,
         seen: &Surface<D>,
@@ -232,7 +232,7 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
     fn sample(
         &self,
         d: D,
-        kind: KindNumber<D::U>,
+        kind: KindIndex<D::U>,
         record: D::U,
         from: Vec3<D::F>,
         u: [D::F; 3],
@@ -253,7 +253,7 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
     fn density(
         &self,
         d: D,
-        kind: KindNumber<D::U>,
+        kind: KindIndex<D::U>,
         record: D::U,
         ray: &Ray<D>,
         seen: &Surface<D>,
@@ -284,7 +284,7 @@ pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
                 record,
                 probability,
             } = pick(d, u[0]);
-            let kind = KindNumber { kind, first: 0 };
+            let kind = KindIndex { kind, first: 0 };
             let sample = lights.sample(d, kind, record, from, [u[1], u[2], u[3]]);
             // A delta light's "density" of 1 turns into the probability of its pick; the estimator is the same.
             LightSample {
@@ -307,7 +307,7 @@ pub fn density<D: Domain, L: LightKinds<D> + ?Sized>(
     let no_light = d.eq_u(seen.light, d.uint(NO_LIGHT));
     let light = d.select_u(no_light, d.uint(0), seen.light);
     let (kind, record) = pick::find(d, light);
-    let kind = KindNumber { kind, first: 0 };
+    let kind = KindIndex { kind, first: 0 };
     match lights.density(d, kind, record, ray, seen) {
         Some(density) => {
             let density = density * pick_probability(d, light);

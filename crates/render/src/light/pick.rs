@@ -12,7 +12,7 @@ record! {
     /// What the record of every light begins with.
     pub struct LightRecord {
         row {
-            /// The position of its kind in the scene's list of kinds.
+            /// Index of its kind in the scene's list of kinds.
             kind: word,
         }
     }
@@ -45,7 +45,7 @@ const PICKS: AliasTable = AliasTable {
 /// A picked light.
 #[derive(Clone, Copy, Debug)]
 pub struct Pick<D: Domain> {
-    /// The position of its kind in the scene's list of kinds.
+    /// Index of its kind in the scene's list of kinds.
     pub kind: D::U,
     /// First word of its record.
     pub record: D::U,
@@ -58,9 +58,9 @@ pub struct Pick<D: Domain> {
 pub fn pick<D: Domain>(d: D, u: D::F) -> Pick<D> {
     let header = PickHeader::uniform_at(d, Buffer::LightAlias, 0);
     let count = d.to_real(header.count);
-    let place = u * count;
-    let slot = d.min(d.floor(place), count - d.lit(1.0));
-    let (light, probability) = PICKS.resolve(d, d.to_uint(slot), place - slot);
+    let scaled = u * count;
+    let slot = d.min(d.floor(scaled), count - d.lit(1.0));
+    let (light, probability) = PICKS.resolve(d, d.to_uint(slot), scaled - slot);
     let (kind, record) = find(d, light);
     Pick {
         kind,
@@ -90,4 +90,18 @@ pub fn set_picks(data: &mut SceneData, entries: impl ExactSizeIterator<Item = Al
     let count = entries.len() as u32;
     PickHeader { count }.append_to(buffer);
     entries.for_each(|entry| entry.append_to(buffer));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::{AreaRecord, PunctualRecord};
+
+    /// The kind is read before it is known which record it belongs to.
+    #[test]
+    fn every_record_begins_with_the_kind() {
+        let kind = LightRecord::offsets().kind;
+        assert_eq!(kind, AreaRecord::offsets().kind);
+        assert_eq!(kind, PunctualRecord::offsets().kind);
+    }
 }

@@ -21,7 +21,7 @@ record! {
     /// A light without extent.
     pub struct PunctualRecord {
         row {
-            /// The position of its kind in the scene's list of kinds.
+            /// Index of its kind in the scene's list of kinds.
             kind: word,
             /// World space. Of a directional light, the unit direction towards it.
             position: vector,

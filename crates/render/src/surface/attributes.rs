@@ -129,7 +129,7 @@ impl<'a, D: Domain, R> Corners<'a, D, R> {
         Self { records, weights }
     }
 
-    /// A number of the records, interpolated.
+    /// A real number of the records, interpolated.
     #[inline(always)]
     pub(super) fn real(&self, d: D, of: impl Fn(&R) -> D::F) -> D::F {
         let ([a, b, c], w) = (&self.records, self.weights);

@@ -14,7 +14,7 @@ pub enum CameraChoice {
     /// The scene's first, or one that frames the scene.
     #[default]
     Default,
-    /// The scene's camera of this name or number.
+    /// The scene's camera of this name or index.
     Named(String),
     /// Given outright.
     View(View),
@@ -91,14 +91,14 @@ fn look(dir: Vec3, up: Vec3) -> Quat {
 
 fn named<'a>(scene: &'a SceneDesc, wanted: &str) -> Result<&'a CameraDesc, PlanError> {
     let by_name = scene.cameras.iter().find(|camera| camera.name == wanted);
-    let by_number = || {
+    let by_index = || {
         wanted
             .parse::<usize>()
             .ok()
-            .and_then(|number| scene.cameras.get(number))
+            .and_then(|index| scene.cameras.get(index))
     };
-    by_name.or_else(by_number).ok_or_else(|| {
-        let list = |(number, camera): (usize, &CameraDesc)| format!("{number} {:?}", camera.name);
+    by_name.or_else(by_index).ok_or_else(|| {
+        let list = |(index, camera): (usize, &CameraDesc)| format!("{index} {:?}", camera.name);
         let names: Vec<_> = scene.cameras.iter().enumerate().map(list).collect();
         let available = if names.is_empty() {
             "no cameras".to_owned()
@@ -113,7 +113,7 @@ fn named<'a>(scene: &'a SceneDesc, wanted: &str) -> Result<&'a CameraDesc, PlanE
 }
 
 /// Chooses the camera and writes its buffer.
-pub(super) fn place(
+pub(super) fn choose(
     scene: &SceneDesc,
     options: &PlanOptions,
     bounds: &Bounds,

@@ -55,7 +55,7 @@ fn words(image: &ImageDesc) -> u64 {
 }
 
 impl Images {
-    /// The image among the texels, where it is given a place if it has none yet.
+    /// The image among the texels, to which it is added if it is not there yet.
     pub(super) fn param(&mut self, scene: &SceneDesc, image: usize) -> ImageParam {
         let desc = &scene.images[image];
         let found = self.firsts.iter().find(|(index, _)| *index == image);

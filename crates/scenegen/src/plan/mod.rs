@@ -210,7 +210,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         return Ok(plan);
     }
     let (camera, camera_name) =
-        camera::place(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
+        camera::choose(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
     images.pack(scene, &mut data)?;
     *data.buffer_mut(Buffer::Params) = materials.params;
 
@@ -243,7 +243,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
 /// What a triangle's material amounts to.
 #[derive(Debug, Clone)]
 struct PlannedMaterial {
-    /// Number of its program.
+    /// Index of its program.
     program: u32,
     /// First word of its parameters.
     params: u32,
@@ -259,7 +259,7 @@ struct Materials {
     programs: Vec<Program>,
     uses: Vec<Vec<MaterialUse>>,
     params: Vec<u32>,
-    /// By the material's number in the description.
+    /// By the material's index in the description.
     planned: Vec<Option<PlannedMaterial>>,
     dismissed: Vec<Dismissed>,
 }
