@@ -1,57 +1,16 @@
 //! Records: what buffers hold, each defined once, with its reader and its writer.
 //!
-//! [`record!`] declares a record as rows of four words, since lanes read rows (see [`Domain::load_rows`]). The struct that
-//! it makes is generic over [`Numbers`]: over a domain it is what a formula has loaded, over [`Plain`] it is what a planner
-//! writes and a test reads back.
+//! [`record!`] declares a record as rows of four words, since lanes read rows (see
+//! [`Domain::load_rows`](crate::domain::Domain::load_rows)). The struct that it makes is generic over [`Numbers`]: over a
+//! domain it is what a formula has loaded, over [`Plain`] it is what a planner writes and a test reads back.
 
-use crate::domain::{Buffer, Domain};
-use crate::math::Vec3;
-use crate::math::vec3::vec3;
+mod numbers;
+mod rows;
 
-/// The numbers that a record is made of: a domain's, or plain ones.
-pub trait Numbers: Copy {
-    /// Real numbers.
-    type F: Copy;
-    /// 32-bit words.
-    type U: Copy;
-    /// The real number whose bits a word has.
-    fn real(self, word: Self::U) -> Self::F;
-}
+pub use numbers::{Numbers, Offsets, Plain};
+pub(crate) use rows::{RowReader, RowWriter, row, words_of_rows};
 
-impl<D: Domain> Numbers for D {
-    type F = D::F;
-    type U = D::U;
-    #[inline(always)]
-    fn real(self, word: D::U) -> D::F {
-        self.from_bits(word)
-    }
-}
-
-/// Plain numbers, `f32` and `u32`: records outside formulas.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plain;
-
-impl Numbers for Plain {
-    type F = f32;
-    type U = u32;
-    #[inline(always)]
-    fn real(self, word: u32) -> f32 {
-        f32::from_bits(word)
-    }
-}
-
-/// In place of its value, a field has the word of the record at which it lies: for formulas that read one field alone.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Offsets;
-
-impl Numbers for Offsets {
-    type F = u32;
-    type U = u32;
-    #[inline(always)]
-    fn real(self, word: u32) -> u32 {
-        word
-    }
-}
+use crate::domain::Buffer;
 
 /// A record of plain numbers, which can be written to a buffer and read back.
 pub trait BufferRecord: Copy {
@@ -82,98 +41,6 @@ pub trait BufferRecord: Copy {
 pub trait IndexedRecord: BufferRecord {
     /// The buffer.
     const BUFFER: Buffer;
-}
-
-/// The words of a record in rows: 0, 1, 2, 3; 4, …
-#[inline(always)]
-pub(crate) fn words_of_rows<const ROWS: usize>() -> [[u32; 4]; ROWS] {
-    std::array::from_fn(|row| [0, 1, 2, 3].map(|word| 4 * row as u32 + word))
-}
-
-/// Takes the fields of a record off its rows, one after the other.
-pub(crate) struct RowReader<N: Numbers, const ROWS: usize> {
-    numbers: N,
-    rows: [[N::U; 4]; ROWS],
-    next: usize,
-}
-
-impl<N: Numbers, const ROWS: usize> RowReader<N, ROWS> {
-    #[inline(always)]
-    pub(crate) fn new(numbers: N, rows: [[N::U; 4]; ROWS]) -> Self {
-        Self {
-            numbers,
-            rows,
-            next: 0,
-        }
-    }
-
-    /// What was read last ends its row.
-    #[inline(always)]
-    pub(crate) fn end_row(&mut self) {
-        self.next = self.next.next_multiple_of(4);
-    }
-
-    #[inline(always)]
-    pub(crate) fn word(&mut self) -> N::U {
-        let word = self.rows[self.next / 4][self.next % 4];
-        self.next += 1;
-        word
-    }
-
-    #[inline(always)]
-    pub(crate) fn real(&mut self) -> N::F {
-        let word = self.word();
-        self.numbers.real(word)
-    }
-
-    #[inline(always)]
-    pub(crate) fn vector(&mut self) -> Vec3<N::F> {
-        let [x, y, z] = [self.real(), self.real(), self.real()];
-        vec3(x, y, z)
-    }
-}
-
-/// Puts the fields of a record into words, one after the other.
-pub(crate) struct RowWriter<'a> {
-    words: &'a mut [u32],
-    next: usize,
-}
-
-impl<'a> RowWriter<'a> {
-    pub(crate) fn new(words: &'a mut [u32]) -> Self {
-        words.fill(0);
-        Self { words, next: 0 }
-    }
-
-    /// What was written last ends its row.
-    pub(crate) fn end_row(&mut self) {
-        self.next = self.next.next_multiple_of(4);
-    }
-
-    pub(crate) fn word(&mut self, value: u32) {
-        self.words[self.next] = value;
-        self.next += 1;
-    }
-
-    pub(crate) fn real(&mut self, value: f32) {
-        self.word(value.to_bits());
-    }
-
-    pub(crate) fn vector(&mut self, value: Vec3<f32>) {
-        for component in value.to_array() {
-            self.real(component);
-        }
-    }
-}
-
-/// A row whose fields have these numbers of words; too many are an error of compilation.
-pub(crate) const fn row(fields: &[usize]) {
-    let (mut words, mut k) = (0, 0);
-    while k < fields.len() {
-        words += fields[k];
-        k += 1;
-    }
-    assert!(words <= 4, "a row has four words");
 }
 
 /// How many words a kind of field has, and its type.
@@ -318,6 +185,7 @@ pub(crate) use record;
 mod tests {
     use super::*;
     use crate::domain::{Scalar, Uint};
+    use crate::math::vec3::vec3;
     use crate::scene_data::SceneData;
 
     record! {
