@@ -2,6 +2,7 @@
 
 use glam::{Affine3A, Mat3, Vec3, Vec4};
 use residual_render::domain::Buffer;
+use residual_render::layer::{Layer, Layers};
 use residual_render::record::IndexedRecord;
 use residual_render::surface::{
     ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
@@ -277,7 +278,7 @@ fn triangles_know_their_objects() {
         transform: transform(0),
     };
     scene.instances.insert(2, invisible);
-    let mut plan = planned(&scene);
+    let plan = planned(&scene);
     let expected = PLACED.iter().enumerate().flat_map(|(object, &mesh)| {
         let triangles = scene.meshes[mesh].triangles.len();
         std::iter::repeat_n(object as u32, triangles)
@@ -293,8 +294,12 @@ fn triangles_know_their_objects() {
     }
 
     assert!(plan.data.buffer(Buffer::Objects).is_empty());
-    plan.pack_objects();
-    let stored: Vec<ObjectRecord> = plan.data.records().collect();
+    let options = PlanOptions {
+        layers: Layers::NONE.with(Layer::MaterialIndex),
+        ..PlanOptions::default()
+    };
+    let asked_for = residual_scenegen::plan::plan(&scene, &options).unwrap();
+    let stored: Vec<ObjectRecord> = asked_for.data.records().collect();
     let material = |mesh: usize| scene.meshes[mesh].material as u32;
     let material = |&mesh: &usize| ObjectRecord {
         material: material(mesh),
