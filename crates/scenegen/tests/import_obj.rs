@@ -60,7 +60,9 @@ fn material(statements: &str) -> (MaterialDesc, SceneDesc) {
 fn phong(material: &MaterialDesc) -> &Phong {
     match &material.surface {
         SurfaceDesc::Phong(phong) => phong,
-        SurfaceDesc::MetallicRoughness(_) | SurfaceDesc::Dielectric { .. } => {
+        SurfaceDesc::MetallicRoughness(_)
+        | SurfaceDesc::Dielectric { .. }
+        | SurfaceDesc::Mirror { .. } => {
             panic!("{material:?}")
         }
     }
@@ -145,7 +147,7 @@ fn mirrors_conserve_energy() {
     assert_eq!(diffuse.factor, [0.25, 0.25, 0.5]);
     assert_eq!(reflectance.factor, [0.5, 0.0, 0.5]);
     assert!(reflectance.texture.is_some());
-    assert!(warns(&scene, "reflect 2 times what arrives"));
+    assert!(warns(&scene, "", "reflect 2 times what arrives"));
 }
 
 /// Rodent registered map_Ks as map_Kd.

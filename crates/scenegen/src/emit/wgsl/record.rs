@@ -184,12 +184,10 @@ fn layers<'t>(
     let channels = features.channels(set);
     for layer in set.iter().filter(|&layer| layer != Layer::SampleCount) {
         let first = set.offset(layer) - Layers::RADIANCE;
-        outputs = match *channels[first..]
-            .first_chunk()
-            .unwrap_or(&[channels[first]; 3])
-        {
-            [x, y, z] if layer.channels().len() == 3 => outputs.vector(layer.name(), vec3(x, y, z)),
-            [x, ..] => outputs.real(layer.name(), x),
+        outputs = match channels[first..first + layer.channels().len()] {
+            [x, y, z] => outputs.vector(layer.name(), vec3(x, y, z)),
+            [x] => outputs.real(layer.name(), x),
+            _ => unreachable!("layers are vectors or numbers"),
         };
     }
     outputs
