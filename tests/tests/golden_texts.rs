@@ -12,6 +12,11 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use residual_render::program::{
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, LightNode, Literal, ScalarNode,
+    SourceNode, Structure,
+};
+use residual_render::texture::Input;
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::emit::rust;
 use residual_scenegen::plan::{Binding, PlanOptions, plan};
@@ -128,6 +133,138 @@ fn each_scene_has_what_it_is_named_after() {
         all.extend(effects);
     }
     assert_eq!(all, Effect::ALL.iter().copied().collect());
+}
+
+/// All nodes of a structure as they are written, those within others too.
+fn literals(structure: &Structure) -> Vec<Literal<'_>> {
+    fn add<'a>(literal: Literal<'a>, all: &mut Vec<Literal<'a>>) {
+        for (_, field) in &literal.fields {
+            match field {
+                Field::Bsdf(node) => add(node.literal(), all),
+                Field::ColorSource(node) => add(node.literal(), all),
+                Field::ScalarSource(node) => add(node.literal(), all),
+                _ => {}
+            }
+        }
+        all.push(literal);
+    }
+    let mut all = Vec::new();
+    for program in &structure.programs {
+        for input in &program.inputs {
+            let literal = match &input.source {
+                SourceNode::Color(node) => node.literal(),
+                SourceNode::Scalar(node) => node.literal(),
+            };
+            add(literal, &mut all);
+        }
+        add(program.bsdf.literal(), &mut all);
+        let test = program.alpha_test.iter();
+        test.for_each(|test| add(test.literal(), &mut all));
+    }
+    let lights = structure.lights.iter();
+    lights.for_each(|light| add(light.literal(), &mut all));
+    add(structure.camera.literal(), &mut all);
+    all
+}
+
+/// The parts between the brackets that follow a name in a text without spaces, for each place where they do.
+fn parts(text: &str, name: &str, open: char) -> Vec<Vec<String>> {
+    let start = format!("{name}{open}");
+    let at = |(start, matched): (usize, &str)| {
+        let is_whole = !text[..start].ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        is_whole.then_some(start + matched.len())
+    };
+    let inside = |start: usize| {
+        let mut parts = vec![String::new()];
+        let mut depth = 0;
+        for c in text[start..].chars() {
+            match c {
+                '(' | '{' | '[' | '<' => depth += 1,
+                ')' | '}' | ']' | '>' if depth == 0 => break,
+                ')' | '}' | ']' | '>' => depth -= 1,
+                ',' if depth == 0 => {
+                    parts.push(String::new());
+                    continue;
+                }
+                _ => {}
+            }
+            parts.last_mut().unwrap().push(c);
+        }
+        parts.retain(|part| !part.is_empty());
+        parts
+    };
+    text.match_indices(&start)
+        .filter_map(at)
+        .map(inside)
+        .collect()
+}
+
+/// Whether a text without spaces has a node with the fields that the node table says.
+fn is_written(text: &str, literal: &Literal<'_>) -> bool {
+    let names: Vec<_> = literal.fields.iter().map(|(name, _)| *name).collect();
+    match literal.form {
+        Form::Unit => text.contains(literal.name),
+        Form::Tuple => parts(text, literal.name, '(')
+            .iter()
+            .any(|parts| parts.len() == names.len()),
+        Form::Struct => parts(text, literal.name, '{').iter().any(|parts| {
+            let fields = parts.iter().map(|part| part.split(':').next().unwrap());
+            fields.eq(names.iter().copied())
+        }),
+        Form::Value => text.contains(&format!("{}<", literal.name)),
+    }
+}
+
+/// The node table says what is printed: names, fields and their order. Each of its rows is called for by some scene.
+#[test]
+fn every_row_of_the_node_table_is_emitted() {
+    let without_spaces = |text: &str| text.replace(char::is_whitespace, "");
+    let mut rows = BTreeSet::new();
+    let tiny = tiny::all().into_iter().map(|tiny| tiny.plan());
+    let fixtures = [fixtures::room(), fixtures::textures(), fixtures::lights()];
+    let options = PlanOptions::default();
+    let fixtures = fixtures.map(|scene| plan(&scene, &options).unwrap());
+    for plan in tiny.chain(fixtures) {
+        let text = without_spaces(&rust::module(&plan, LANES));
+        for literal in literals(&plan.structure) {
+            assert!(is_written(&text, &literal), "{}: {literal:?}", plan.name);
+            rows.insert((literal.module, literal.name));
+        }
+    }
+    let tables = [
+        ("bsdf", BsdfNode::NAMES),
+        ("texture", ColorNode::NAMES),
+        ("texture", ScalarNode::NAMES),
+        ("light", LightNode::NAMES),
+        ("camera", CameraNode::NAMES),
+        ("alpha", AlphaTestNode::NAMES),
+    ];
+    let all: BTreeSet<_> = tables
+        .iter()
+        .flat_map(|(module, names)| names.iter().map(|name| (*module, *name)))
+        .collect();
+    assert_eq!(rows, all);
+
+    // The judge tells other fields, another order and other names from these.
+    let sum = BsdfNode::Sum {
+        a: Box::new(BsdfNode::Black),
+        b: Box::new(BsdfNode::Black),
+        probability: Input(0),
+    };
+    for (text, expected) in [
+        ("Sum{a:Black,b:Black,probability,}", true),
+        (
+            "Sum{a:Mix{a:Black,b,weight},b:Black,probability:Bound(x),}",
+            true,
+        ),
+        ("Sum{b:Black,a:Black,probability,}", false),
+        ("Sum{a:Black,probability,}", false),
+        ("MySum{a:Black,b:Black,probability,}", false),
+    ] {
+        assert_eq!(is_written(text, &sum.literal()), expected, "{text}");
+    }
+    let written = without_spaces(&format!("{sum:?}"));
+    assert!(is_written(&written, &sum.literal()), "{written}");
 }
 
 /// What rustfmt would change. (Of its standard input, `--check` says nothing in its status.)

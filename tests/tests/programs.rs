@@ -57,8 +57,7 @@ fn edited(mut scene: SceneDesc, number: usize) -> SceneDesc {
     let color = match surface {
         SurfaceDesc::MetallicRoughness(surface) => &mut surface.base_color,
         SurfaceDesc::Phong(surface) => &mut surface.diffuse,
-        SurfaceDesc::Mirror { diffuse, .. } => diffuse,
-        SurfaceDesc::Dielectric { .. } => panic!("there is no glass"),
+        other => panic!("no base colour: {other:?}"),
     };
     color.factor = [0.9, 0.8, 0.05];
     scene

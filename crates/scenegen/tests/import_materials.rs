@@ -33,9 +33,7 @@ fn square_with(material: Value) -> Gltf {
 fn surface(material: &MaterialDesc) -> &MetallicRoughness {
     match &material.surface {
         SurfaceDesc::MetallicRoughness(surface) => surface,
-        SurfaceDesc::Phong(_) | SurfaceDesc::Mirror { .. } | SurfaceDesc::Dielectric { .. } => {
-            panic!("{material:?}")
-        }
+        other => panic!("{other:?}"),
     }
 }
 

@@ -4,8 +4,8 @@
 //! it comes from, both pointing away from the surface. The frame lies on the side of `wo`: `wo.z` > 0. Whether
 //! that is the front of the surface is said by [`Surface::front`].
 //!
-//! To add a BSDF: write one file with a struct generic over its sources, implement [`Bsdf`], and name it in
-//! `program::BsdfNode`.
+//! To add a BSDF: write one file with a struct generic over its sources, implement [`Bsdf`], and give it a row in the
+//! node table (`program/nodes.rs`).
 
 mod coated_diffuse;
 mod combine;
