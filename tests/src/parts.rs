@@ -2,7 +2,7 @@
 
 use residual_bvh::{BuildQuality, Bvh, Culling, Hit, HitFilter, MarkedHits, Ray, build};
 use residual_device_cpu::Traversal;
-use residual_device_cpu::traversal::Alpha;
+use residual_device_cpu::traversal::AlphaFilter;
 use residual_render::scene_data::SceneData;
 
 /// Triangles in parts, in the order of their numbers. Every ray is traced against every part by itself.
@@ -48,7 +48,7 @@ fn of_scene(first: u32, hit: &Hit) -> Hit {
 /// What alpha leaves of a part.
 struct Covered<'a> {
     first: u32,
-    alpha: &'a Alpha<'a>,
+    alpha: &'a AlphaFilter<'a>,
 }
 
 impl HitFilter for Covered<'_> {
@@ -61,7 +61,7 @@ impl HitFilter for Covered<'_> {
 }
 
 impl Traversal for Parts {
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&Alpha<'_>>) {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>) {
         for (ray, nearest) in rays.iter().zip(hits) {
             *nearest = Hit::miss(ray.tmax);
             for (first, part) in self.parts() {
@@ -77,7 +77,7 @@ impl Traversal for Parts {
         }
     }
 
-    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>) {
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&AlphaFilter<'_>>) {
         for (ray, occluded) in rays.iter().zip(occluded) {
             *occluded = self.parts().any(|(first, part)| match alpha {
                 Some(alpha) => part.any_hit_filtered(ray, &Covered { first, alpha }),

@@ -4,7 +4,7 @@ use std::ffi::c_void;
 use std::marker::PhantomData;
 
 use residual_bvh::{Hit, Ray};
-use residual_device_cpu::traversal::{Alpha, Traversal};
+use residual_device_cpu::traversal::{AlphaFilter, Traversal};
 
 use super::ffi::{Arguments, Handle, INVALID_GEOMETRY_ID, RayHits, Trace1, TraceN};
 use super::library::EmbreeScene;
@@ -89,7 +89,7 @@ fn hit<const N: usize>(packet: &RayHits<N>, lane: usize) -> Hit {
 }
 
 impl Traversal for EmbreeTraversal<'_> {
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&Alpha<'_>>) {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>) {
         assert!(alpha.is_none(), "Embree is measured without alpha");
         match self.calls {
             Calls::One { closest, .. } => self.packets_of::<1>(
@@ -109,7 +109,7 @@ impl Traversal for EmbreeTraversal<'_> {
         }
     }
 
-    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>) {
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&AlphaFilter<'_>>) {
         assert!(alpha.is_none(), "Embree is measured without alpha");
         match self.calls {
             Calls::One { any, .. } => self.packets_of::<1>(

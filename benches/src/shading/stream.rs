@@ -6,7 +6,7 @@
 
 use residual_bvh::{Hit, Ray};
 use residual_device_cpu::Traversal;
-use residual_device_cpu::traversal::Alpha;
+use residual_device_cpu::traversal::AlphaFilter;
 use residual_render::alias_table::alias_entries;
 use residual_render::camera::CameraRecord;
 use residual_render::domain::Buffer;
@@ -144,12 +144,12 @@ impl Hits {
 }
 
 impl Traversal for Hits {
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], _: Option<&Alpha<'_>>) {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], _: Option<&AlphaFilter<'_>>) {
         let count = rays.len();
         hits[..count].copy_from_slice(&self.0[..count]);
     }
 
-    fn any_hits(&self, _: &[Ray], occluded: &mut [bool], _: Option<&Alpha<'_>>) {
+    fn any_hits(&self, _: &[Ray], occluded: &mut [bool], _: Option<&AlphaFilter<'_>>) {
         occluded.fill(true);
     }
 }

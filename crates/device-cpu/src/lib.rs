@@ -11,6 +11,7 @@ mod interpreter;
 mod job;
 pub mod lanes;
 pub mod plugin;
+mod render_lanes;
 mod samples;
 mod shade;
 mod stream;
@@ -27,6 +28,5 @@ pub use traversal::{AnyBvh, Traversal};
 #[doc(hidden)]
 pub mod generated {
     pub use fearless_simd;
-    pub use residual_bvh::{Hit, Ray};
     pub use residual_render as render;
 }

@@ -12,7 +12,7 @@ use residual_render::layer::Layers;
 
 use crate::job::{Counters, SceneView, TileJob, TileRenderer};
 use crate::lanes::LaneCount;
-use crate::traversal::{Alpha, Traversal};
+use crate::traversal::{AlphaFilter, Traversal};
 
 /// Raised whenever the layout of anything here or the meaning of buffers changes.
 const ABI_VERSION: u32 = 3;
@@ -89,33 +89,33 @@ impl<T> RawSliceMut<T> {
     }
 }
 
-/// An [`Alpha`] as C sees it; none without a function.
+/// An [`AlphaFilter`] as C sees it; none without a function.
 #[derive(Clone, Copy)]
 #[repr(C)]
-struct RawAlpha {
-    /// A `&Alpha`.
+struct RawAlphaFilter {
+    /// A `&AlphaFilter`.
     context: *const c_void,
-    covers: Option<unsafe extern "C" fn(*const c_void, *const Ray, *const Hit) -> bool>,
+    accept: Option<unsafe extern "C" fn(*const c_void, *const Ray, *const Hit) -> bool>,
 }
 
-impl RawAlpha {
+impl RawAlphaFilter {
     /// Borrows what `alpha` borrows: it must not be called after that is gone.
-    fn new(alpha: &Option<&Alpha<'_>>) -> Self {
+    fn new(alpha: &Option<&AlphaFilter<'_>>) -> Self {
         /// # Safety
-        /// `context` is a `&Alpha`, and ray and hit are valid.
-        unsafe extern "C" fn covers(
+        /// `context` is a `&AlphaFilter`, and ray and hit are valid.
+        unsafe extern "C" fn accept(
             context: *const c_void,
             ray: *const Ray,
             hit: *const Hit,
         ) -> bool {
             // SAFETY: by this function's contract.
-            unsafe { (*context.cast::<&Alpha<'_>>())(&*ray, &*hit) }
+            unsafe { (*context.cast::<&AlphaFilter<'_>>())(&*ray, &*hit) }
         }
         Self {
             context: alpha
                 .as_ref()
                 .map_or(ptr::null(), |alpha| ptr::from_ref(alpha).cast()),
-            covers: alpha.is_some().then_some(covers),
+            accept: alpha.is_some().then_some(accept),
         }
     }
 
@@ -123,12 +123,12 @@ impl RawAlpha {
     ///
     /// # Safety
     /// That alpha is alive.
-    unsafe fn with<R>(self, f: impl FnOnce(Option<&Alpha<'_>>) -> R) -> R {
-        match self.covers {
+    unsafe fn with<R>(self, f: impl FnOnce(Option<&AlphaFilter<'_>>) -> R) -> R {
+        match self.accept {
             None => f(None),
-            Some(covers) => f(Some(&|ray, hit| {
+            Some(accept) => f(Some(&|ray, hit| {
                 // SAFETY: the context is alive, says the caller, and goes with the function.
-                unsafe { covers(self.context, ray, hit) }
+                unsafe { accept(self.context, ray, hit) }
             })),
         }
     }
@@ -140,9 +140,10 @@ impl RawAlpha {
 struct RawTraversal {
     /// A `&(dyn Traversal + Sync)`.
     context: *const c_void,
-    closest_hits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<Hit>, RawAlpha),
-    any_hits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<bool>, RawAlpha),
-    visits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<u32>, RawAlpha),
+    closest_hits:
+        unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<Hit>, RawAlphaFilter),
+    any_hits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<bool>, RawAlphaFilter),
+    visits: unsafe extern "C" fn(*const c_void, RawSlice<Ray>, RawSliceMut<u32>, RawAlphaFilter),
 }
 
 impl RawTraversal {
@@ -153,7 +154,7 @@ impl RawTraversal {
             context: *const c_void,
             rays: RawSlice<Ray>,
             hits: RawSliceMut<Hit>,
-            alpha: RawAlpha,
+            alpha: RawAlphaFilter,
         ) {
             // SAFETY: by this function's contract.
             unsafe {
@@ -167,7 +168,7 @@ impl RawTraversal {
             context: *const c_void,
             rays: RawSlice<Ray>,
             occluded: RawSliceMut<bool>,
-            alpha: RawAlpha,
+            alpha: RawAlphaFilter,
         ) {
             // SAFETY: by this function's contract.
             unsafe {
@@ -181,7 +182,7 @@ impl RawTraversal {
             context: *const c_void,
             rays: RawSlice<Ray>,
             visits: RawSliceMut<u32>,
-            alpha: RawAlpha,
+            alpha: RawAlphaFilter,
         ) {
             // SAFETY: by this function's contract.
             unsafe {
@@ -203,20 +204,20 @@ unsafe impl Sync for RawTraversal {}
 
 /// The library's side: what it refers to lives as long as the call.
 impl Traversal for RawTraversal {
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&Alpha<'_>>) {
-        let (hits, alpha) = (RawSliceMut::new(hits), RawAlpha::new(&alpha));
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>) {
+        let (hits, alpha) = (RawSliceMut::new(hits), RawAlphaFilter::new(&alpha));
         // SAFETY: the function goes with the context, and all arguments outlive the call.
         unsafe { (self.closest_hits)(self.context, RawSlice::new(rays), hits, alpha) }
     }
 
-    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>) {
-        let (occluded, alpha) = (RawSliceMut::new(occluded), RawAlpha::new(&alpha));
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&AlphaFilter<'_>>) {
+        let (occluded, alpha) = (RawSliceMut::new(occluded), RawAlphaFilter::new(&alpha));
         // SAFETY: as above.
         unsafe { (self.any_hits)(self.context, RawSlice::new(rays), occluded, alpha) }
     }
 
-    fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&Alpha<'_>>) {
-        let (visits, alpha) = (RawSliceMut::new(visits), RawAlpha::new(&alpha));
+    fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&AlphaFilter<'_>>) {
+        let (visits, alpha) = (RawSliceMut::new(visits), RawAlphaFilter::new(&alpha));
         // SAFETY: as above.
         unsafe { (self.visits)(self.context, RawSlice::new(rays), visits, alpha) }
     }

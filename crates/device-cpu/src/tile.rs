@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use residual_bvh::{Hit, Ray};
+use residual_render::alpha::Candidate;
 use residual_render::domain::Lanes;
 use residual_render::scene::Scene;
 use residual_render::tracer::{Settings, Tracer};
@@ -13,7 +14,7 @@ use crate::job::{Counters, SceneView, TileJob};
 use crate::samples::Samples;
 use crate::shade::Shading;
 use crate::stream::{PathStream, ShadowStream, SortedHits};
-use crate::traversal::Alpha;
+use crate::traversal::AlphaFilter;
 
 /// Adds the time since the last lap to a counter.
 struct Stopwatch(Instant);
@@ -45,13 +46,20 @@ where
 {
     let lights = scene.lights();
     let tracer = scene.tracer(Settings::new(d, &job.tracer));
-    let covers = |ray: &Ray, hit: &Hit| scene.alpha_test(ray, hit);
-    let alpha: Option<&Alpha<'_>> = if scene.has_alpha_tests() {
-        Some(&covers)
+    let accept = |ray: &Ray, hit: &Hit| {
+        scene.alpha_test(&Candidate {
+            org: ray.org,
+            dir: ray.dir,
+            uv: [hit.u, hit.v],
+            triangle: hit.prim,
+        })
+    };
+    let alpha: Option<&AlphaFilter<'_>> = if scene.has_alpha_tests() {
+        Some(&accept)
     } else {
         None
     };
-    let program_of = |prim: u32| program_in(&view.buffers, prim);
+    let program_of = |triangle: u32| program_in(&view.buffers, triangle);
     let mut cameras = CameraRays::new(job);
     let mut paths = PathStream::with_capacity(STREAM);
     let mut next = PathStream::with_capacity(STREAM);

@@ -13,19 +13,19 @@ use residual_render::scene_data::SceneData;
 use crate::lanes::LaneCount;
 
 /// Says whether a surface is there where a ray meets it (alpha). A pure function of both.
-pub type Alpha<'a> = dyn Fn(&Ray, &Hit) -> bool + 'a;
+pub type AlphaFilter<'a> = dyn Fn(&Ray, &Hit) -> bool + 'a;
 
 /// Traces streams of rays against a scene's triangles.
 pub trait Traversal {
     /// The nearest hit of each ray; of several at the same distance, the one with the smallest triangle number.
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&Alpha<'_>>);
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>);
 
     /// Whether each ray hits anything.
-    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>);
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&AlphaFilter<'_>>);
 
     /// How many nodes and packets of triangles are visited until the nearest hit of each ray is found; 0 where the
     /// traversal does not count.
-    fn visits(&self, _rays: &[Ray], visits: &mut [u32], _alpha: Option<&Alpha<'_>>) {
+    fn visits(&self, _rays: &[Ray], visits: &mut [u32], _alpha: Option<&AlphaFilter<'_>>) {
         visits.fill(0);
     }
 }
@@ -36,7 +36,7 @@ pub struct AnyBvh {
     tree: Tree,
     /// Some triangles are seen from their front only.
     sided: bool,
-    lets_through: Marks,
+    alpha_tested: Marks,
 }
 
 /// A bit for each triangle.
@@ -85,7 +85,7 @@ impl AnyBvh {
         Self {
             tree,
             sided,
-            lets_through: Marks::new(&data.alpha_tested),
+            alpha_tested: Marks::new(&data.alpha_tested),
         }
     }
 
@@ -100,18 +100,18 @@ impl AnyBvh {
 }
 
 /// What alpha leaves. It is asked about triangles that may let rays through, only: it is a call across libraries.
-struct Covered<'a> {
-    alpha: &'a Alpha<'a>,
-    lets_through: &'a Marks,
+struct AlphaTested<'a> {
+    alpha: &'a AlphaFilter<'a>,
+    alpha_tested: &'a Marks,
 }
 
-impl HitFilter for Covered<'_> {
+impl HitFilter for AlphaTested<'_> {
     const CULLING: Culling = Culling::PerTriangle;
     const REJECTS: bool = true;
 
     #[inline(always)]
     fn accept(&self, ray: &Ray, hit: &Hit) -> bool {
-        !self.lets_through.has(hit.prim) || (self.alpha)(ray, hit)
+        !self.alpha_tested.has(hit.prim) || (self.alpha)(ray, hit)
     }
 }
 
@@ -132,9 +132,9 @@ macro_rules! with_filter {
     ($self:ident, $alpha:ident, $filter:ident => $call:expr) => {
         match $alpha {
             Some(alpha) => {
-                let $filter = &Covered {
+                let $filter = &AlphaTested {
                     alpha,
-                    lets_through: &$self.lets_through,
+                    alpha_tested: &$self.alpha_tested,
                 };
                 $call
             }
@@ -152,17 +152,17 @@ macro_rules! with_filter {
 
 /// Streams are traced in packets as wide as the hierarchy, which fall back to single rays where neighbours disagree.
 impl Traversal for AnyBvh {
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&Alpha<'_>>) {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>) {
         with_tree!(&self.tree, simd, kernel, bvh => with_filter!(self, alpha, filter =>
             kernel.closest_hits(simd, Watertight, bvh, rays, hits, filter)));
     }
 
-    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&Alpha<'_>>) {
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&AlphaFilter<'_>>) {
         with_tree!(&self.tree, simd, kernel, bvh => with_filter!(self, alpha, filter =>
             kernel.any_hits(simd, Watertight, bvh, rays, occluded, filter)));
     }
 
-    fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&Alpha<'_>>) {
+    fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&AlphaFilter<'_>>) {
         with_tree!(&self.tree, simd, _kernel, bvh => with_filter!(self, alpha, filter => {
             for (ray, visits) in rays.iter().zip(visits) {
                 let cost = traversal_cost(simd, Watertight, bvh, ray, filter);

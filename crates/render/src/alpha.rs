@@ -1,10 +1,7 @@
 //! Alpha tests: whether a surface is there at all. Traversal makes them, one hit at a time, where a scene has any.
 
-use residual_bvh::{Hit, Ray};
-
 use crate::domain::{Buffers, Domain, Scalar, Uint};
 use crate::math::Vec3;
-use crate::math::vec3::vec3;
 use crate::sampler::{hash, unit};
 use crate::surface::{self, Attributes, Surface};
 use crate::texture::ScalarSource;
@@ -59,19 +56,28 @@ impl<D: Domain, A: ScalarSource<D>> AlphaTest<D> for AlphaBlend<A> {
     }
 }
 
-/// Makes the test for this hit of this ray.
+/// A hit that traversal asks about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// The ray's origin, world space.
+    pub org: [f32; 3],
+    /// Its direction.
+    pub dir: [f32; 3],
+    /// Barycentric weights of corners 1 and 2.
+    pub uv: [f32; 2],
+    /// Index of the triangle.
+    pub triangle: u32,
+}
+
+/// Makes the test for this hit.
 #[inline(always)]
 pub fn alpha_test<'a, T: AlphaTest<Scalar<'a>>>(
     buffers: &'a Buffers<'a>,
     test: &T,
-    ray: &Ray,
-    hit: &Hit,
+    candidate: &Candidate,
 ) -> bool {
-    let hit = surface::Hit {
-        u: hit.u,
-        v: hit.v,
-        prim: Uint(hit.prim),
-    };
-    let ray = [ray.org, ray.dir].map(|[x, y, z]| vec3(x, y, z));
-    test.passes(Scalar::new(buffers), ray, &hit)
+    let [u, v] = candidate.uv;
+    let prim = Uint(candidate.triangle);
+    let ray = [candidate.org, candidate.dir].map(Vec3::from);
+    test.passes(Scalar::new(buffers), ray, &surface::Hit { u, v, prim })
 }

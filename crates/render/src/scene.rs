@@ -1,7 +1,6 @@
 //! What a device needs of a renderer: the seam along which specialisation replaces one by another.
 
-use residual_bvh::{Hit, Ray};
-
+use crate::alpha::Candidate;
 use crate::camera::Camera;
 use crate::domain::Domain;
 use crate::light::LightKinds;
@@ -37,8 +36,8 @@ pub trait Scene<D: Domain>: Sync {
     fn has_alpha_tests(&self) -> bool {
         false
     }
-    /// Whether the surface is there for this hit of this ray: a pure function of both.
-    fn alpha_test(&self, _ray: &Ray, _hit: &Hit) -> bool {
+    /// Whether the surface is there for this hit: a pure function.
+    fn alpha_test(&self, _candidate: &Candidate) -> bool {
         true
     }
     /// Runs `visitor` with program number `program`.

@@ -1,10 +1,8 @@
 //! The interpreted renderer: a scene's structure as boxed nodes. It starts at once and needs no compiler.
 
-use residual_bvh::{Hit, Ray};
-
 use super::boxed::Boxing;
 use super::{BoxedMaterial, Structure};
-use crate::alpha::{AlphaTest, alpha_test};
+use crate::alpha::{AlphaTest, Candidate, alpha_test};
 use crate::camera::Camera;
 use crate::domain::{Buffers, Domain, Scalar};
 use crate::layer::Layers;
@@ -67,11 +65,11 @@ impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
     fn has_alpha_tests(&self) -> bool {
         self.alpha_tests.iter().any(Option::is_some)
     }
-    fn alpha_test(&self, ray: &Ray, hit: &Hit) -> bool {
-        let program = program_in(self.buffers, hit.prim) as usize;
+    fn alpha_test(&self, candidate: &Candidate) -> bool {
+        let program = program_in(self.buffers, candidate.triangle) as usize;
         self.alpha_tests[program]
             .as_ref()
-            .is_none_or(|test| alpha_test(self.buffers, test, ray, hit))
+            .is_none_or(|test| alpha_test(self.buffers, test, candidate))
     }
     fn visit_material<V: MaterialVisitor<D>>(&self, program: usize, visitor: V) -> V::Output {
         visitor.visit(&self.materials[program])

@@ -95,7 +95,7 @@ fn alpha_tests(out: &mut Module, programs: &[Program], literals: &Literals<'_>) 
     if programs.iter().all(|program| program.alpha_test.is_none()) {
         return Ok(());
     }
-    out.import("alpha", &["alpha_test"]);
+    out.import("alpha", &["Candidate", "alpha_test"]);
     out.import("triangle", &["program_in"]);
     writeln!(
         out,
@@ -103,9 +103,12 @@ fn alpha_tests(out: &mut Module, programs: &[Program], literals: &Literals<'_>) 
     )?;
     writeln!(
         out,
-        "    #[inline(always)]\n    fn alpha_test(&self, ray: &Ray, hit: &Hit) -> bool {{"
+        "    #[inline(always)]\n    fn alpha_test(&self, candidate: &Candidate) -> bool {{"
     )?;
-    writeln!(out, "        match program_in(self.buffers, hit.prim) {{")?;
+    writeln!(
+        out,
+        "        match program_in(self.buffers, candidate.triangle) {{"
+    )?;
     for (index, program) in programs.iter().enumerate() {
         let Some(test) = &program.alpha_test else {
             continue;
@@ -114,7 +117,7 @@ fn alpha_tests(out: &mut Module, programs: &[Program], literals: &Literals<'_>) 
         writeln!(out, "            {index} => {{\n                {test}")?;
         writeln!(
             out,
-            "                alpha_test(self.buffers, &test, ray, hit)\n            }}"
+            "                alpha_test(self.buffers, &test, candidate)\n            }}"
         )?;
     }
     writeln!(out, "            _ => true,\n        }}\n    }}")
