@@ -12,7 +12,12 @@ use residual_render::tracer::{DebugView, TracerNode};
 
 /// Generates a renderer for a scene, and renders it.
 #[derive(Parser)]
-#[command(name = "cargo xtask", version, arg_required_else_help = true)]
+#[command(
+    name = "cargo xtask",
+    bin_name = "cargo xtask",
+    version,
+    arg_required_else_help = true
+)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,

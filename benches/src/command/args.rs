@@ -12,7 +12,12 @@ use crate::rays::RayKind;
 
 /// Measures speed.
 #[derive(Parser)]
-#[command(name = "cargo xtask bench", version, arg_required_else_help = true)]
+#[command(
+    name = "cargo xtask bench",
+    bin_name = "cargo xtask bench",
+    version,
+    arg_required_else_help = true
+)]
 pub(super) struct Cli {
     #[command(subcommand)]
     pub(super) command: Command,
