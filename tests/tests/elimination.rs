@@ -101,6 +101,7 @@ const SOURCES: &[(&str, &[Effect])] = &[
 const COMMON: &[&str] = &[
     "bvh/src/ray.rs",
     "device-cpu/src/",
+    "render/src/alias_table.rs",
     "render/src/bsdf/diffuse.rs",
     "render/src/bsdf/mod.rs",
     "render/src/camera.rs",
@@ -108,16 +109,20 @@ const COMMON: &[&str] = &[
     // How many numbers a sample has.
     "render/src/layer.rs",
     "render/src/light/mod.rs",
+    "render/src/light/pick.rs",
     "render/src/material.rs",
     "render/src/math/",
+    "render/src/record/",
     "render/src/sampler/",
-    "render/src/surface.rs",
+    "render/src/surface/",
     // Constants and parameters.
     "render/src/texture/mod.rs",
+    "render/src/texture/params.rs",
     "render/src/tracer/mod.rs",
     "render/src/tracer/path.rs",
     "render/src/tracer/settings.rs",
     "render/src/tracer/step.rs",
+    "render/src/triangle.rs",
 ];
 
 fn planned(scene: &SceneDesc) -> Plan {
