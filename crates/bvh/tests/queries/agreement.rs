@@ -2,7 +2,8 @@
 //! answer bit for bit (I-04, I-08, I-09, I-14, B-04).
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
-use crate::runner::{Random, aimed, check, trials};
+use crate::random::Random;
+use crate::runner::{aimed, check, trials};
 use residual_bvh::Ray;
 
 /// Rays at edges, at vertices, in random directions, and along axes.

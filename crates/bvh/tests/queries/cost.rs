@@ -7,7 +7,8 @@ use residual_bvh::{
 };
 
 use crate::mesh::{Mesh, soup};
-use crate::runner::{Random, aimed, trials};
+use crate::random::Random;
+use crate::runner::{aimed, trials};
 
 /// No intersection is a hit: the interval stays as long as it is.
 struct NoHits;

@@ -8,7 +8,8 @@ use residual_bvh::{
 
 use crate::mesh::{Mesh, soup};
 use crate::oracle::closest_hit_of_all;
-use crate::runner::{Random, aimed, same, trials};
+use crate::random::Random;
+use crate::runner::{aimed, same, trials};
 
 fn agree<const N: usize, const P: usize>(mesh: &Mesh, rays: &[Ray])
 where

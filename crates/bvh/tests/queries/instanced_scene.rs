@@ -8,7 +8,8 @@ use residual_bvh::{
 };
 
 use crate::mesh::{Mesh, jittered_icosphere, soup};
-use crate::runner::{Random, same};
+use crate::random::Random;
+use crate::runner::same;
 
 /// One scene in hierarchies of several widths.
 pub(crate) struct Scene {

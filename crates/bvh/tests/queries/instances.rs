@@ -10,7 +10,8 @@ use crate::instanced_scene::{
     KINDS, Scene, check_in_world, closest, instanced, object, same_hit, scene, transform,
 };
 use crate::mesh::{Mesh, jittered_icosphere, soup};
-use crate::runner::{Holes, Random, Widths, aimed, same, trials};
+use crate::random::Random;
+use crate::runner::{Holes, Widths, aimed, same, trials};
 
 /// The instances and triangles that `f64` finds, at its distances.
 #[test]

@@ -12,7 +12,8 @@ use residual_bvh::{
 
 use crate::mesh::{Mesh, jittered_icosphere};
 use crate::oracle::{closest_hit_of_all, exact_closest_hit_of_all};
-use crate::runner::{Random, aimed, same};
+use crate::random::Random;
+use crate::runner::{aimed, same};
 use crate::tally::{Counts, Tally, check};
 
 /// Rays that are traced as one stream: not a whole number of windows or packets.

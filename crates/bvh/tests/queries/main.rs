@@ -11,6 +11,7 @@ mod kernels;
 mod mesh;
 mod oracle;
 mod quantized;
+mod random;
 mod refit;
 mod robustness;
 mod runner;

@@ -1,6 +1,6 @@
 //! Meshes for the tests.
 
-use crate::runner::Random;
+use crate::random::Random;
 
 #[derive(Clone, Default)]
 pub(crate) struct Mesh {

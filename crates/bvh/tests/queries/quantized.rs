@@ -8,7 +8,8 @@ use residual_bvh::{
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
 use crate::oracle::closest_hit_of_all;
-use crate::runner::{Random, aimed, same, trials};
+use crate::random::Random;
+use crate::runner::{aimed, same, trials};
 
 const LEAF: u32 = 1 << 31;
 

@@ -4,7 +4,8 @@ use residual_bvh::{AllHits, BuildQuality, Bvh, BvhView, Hit, MarkedHits, Ray};
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
 use crate::oracle::closest_hit_of_all;
-use crate::runner::{Random, Widths, aimed, same, trials};
+use crate::random::Random;
+use crate::runner::{Widths, aimed, same, trials};
 
 impl Widths {
     fn refit(&mut self, mesh: &Mesh) {

@@ -5,7 +5,8 @@ use residual_bvh::{AllHits, BuildQuality, Hit, Ray};
 
 use crate::mesh::{Mesh, jittered_icosphere, soup};
 use crate::oracle::closest_hit_of_all;
-use crate::runner::{Random, Widths, aimed, check, same, trials};
+use crate::random::Random;
+use crate::runner::{Widths, aimed, check, same, trials};
 
 /// Garbage among the triangles changes no hit (I-07).
 #[test]

@@ -7,7 +7,8 @@ use residual_bvh::{
 };
 
 use crate::mesh::{Mesh, jittered_icosphere, soup};
-use crate::runner::{Random, aimed, same, trials};
+use crate::random::Random;
+use crate::runner::{aimed, same, trials};
 
 const HEADER: usize = 40;
 

@@ -7,7 +7,7 @@ use residual_bvh::{
 };
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
-use crate::runner::Random;
+use crate::random::Random;
 
 const LEAF: u32 = 1 << 31;
 

@@ -2,7 +2,8 @@
 //! random directions have no power.
 
 use crate::mesh::{Mesh, fan, grid, jittered_icosphere};
-use crate::runner::{Random, Widths, aimed, trials};
+use crate::random::Random;
+use crate::runner::{Widths, aimed, trials};
 use residual_bvh::{AllHits, BuildQuality, Exact, Fast, Precision, Ray, Watertight, closest_hit};
 
 /// Aims from points inside the mesh around `center` at edges and vertices.
