@@ -1,6 +1,7 @@
 //! Independent random numbers: the baseline.
 
-use super::{SampleKey, Sampler, hash, unit};
+use super::hash::{hash, unit};
+use super::key::{SampleKey, Sampler};
 use crate::domain::Domain;
 
 /// Hashes pixel, sample and dimension.

@@ -1,7 +1,8 @@
 //! Owen-scrambled Sobol points, padded: every dimension pair is its own randomisation of the first two Sobol
 //! dimensions, a (0, 2)-sequence (Burley 2020, "Practical Hash-based Owen Scrambling").
 
-use super::{SampleKey, Sampler, hash, unit};
+use super::hash::{hash, unit};
+use super::key::{SampleKey, Sampler};
 use crate::domain::Domain;
 
 /// The padded, scrambled, shuffled two-dimensional Sobol sequence.
