@@ -1,8 +1,9 @@
 //! Functions, evaluated: the oracle that says whether a recording computes what the formula does.
 
 use super::apply::apply;
-use super::function::{Function, ParameterKind, Statement};
+use super::function::{Function, Statement};
 use super::node::{Id, Node};
+use super::parameter::ParameterKind;
 use crate::domain::Buffers;
 
 /// A run of a function.

@@ -1,31 +1,10 @@
 //! Functions: what is needed of a tape, in the order and the blocks in which it is computed.
 
 use super::node::{Id, Kind, Node};
+use super::parameter::{Parameter, ParameterKind};
 use super::record::{Expr, Real, Truth, Word};
-use super::{Recorded, Tape};
+use super::recorded::{Recorded, Tape};
 use crate::math::Vec3;
-
-/// What a parameter or an output is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ParameterKind {
-    /// A real number.
-    Real,
-    /// An unsigned integer.
-    Word,
-    /// A truth value.
-    Truth,
-    /// Three real numbers.
-    Vector,
-}
-
-/// A parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Parameter {
-    /// Its name, `snake_case`.
-    pub name: &'static str,
-    /// What it is.
-    pub kind: ParameterKind,
-}
 
 /// One value that a function yields.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -101,7 +80,7 @@ impl<'t> Outputs<'t> {
         )
     }
 
-    pub(super) fn finish(self, tape: &Tape) -> Vec<Output> {
+    fn finish(self, tape: &Tape) -> Vec<Output> {
         assert!(
             self.tape.is_none_or(|known| std::ptr::eq(known, tape)),
             "a function's outputs are of its tape"
@@ -295,8 +274,15 @@ impl Schedule<'_> {
     }
 }
 
+impl Tape {
+    /// What computes these outputs from the parameters.
+    pub fn function(&self, name: impl Into<String>, outputs: Outputs<'_>) -> Function {
+        schedule(&self.recorded.borrow(), name.into(), outputs.finish(self))
+    }
+}
+
 /// The function that yields `outputs`.
-pub(super) fn schedule(recorded: &Recorded, name: String, outputs: Vec<Output>) -> Function {
+fn schedule(recorded: &Recorded, name: String, outputs: Vec<Output>) -> Function {
     let mut schedule = Schedule {
         recorded,
         blocks: vec![Block::default()],

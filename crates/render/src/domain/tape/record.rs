@@ -5,8 +5,11 @@ use std::marker::PhantomData;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
 use super::node::{Id, Kind, Node, Op};
-use super::{Recorded, Tape};
+use super::parameter::{Parameter, ParameterKind};
+use super::recorded::{Recorded, Tape};
 use crate::domain::{Buffer, Bundle, Domain};
+use crate::math::Vec3;
+use crate::math::vec3::vec3;
 
 /// The domain of expressions on a tape.
 #[derive(Clone, Copy, Debug)]
@@ -110,6 +113,39 @@ impl Shr<u32> for Expr<'_, u32> {
     fn shr(self, by: u32) -> Self {
         assert!(by < 32, "shifts are by less than 32");
         self.unary(Op::ShrU(by))
+    }
+}
+
+impl Tape {
+    fn parameter(&self, name: &'static str, kind: ParameterKind) -> u32 {
+        let mut recorded = self.recorded.borrow_mut();
+        recorded.parameters.push(Parameter { name, kind });
+        recorded.parameters.len() as u32 - 1
+    }
+
+    fn component<K>(&self, parameter: u32, component: Option<u8>, kind: Kind) -> Expr<'_, K> {
+        let node = Node::Parameter {
+            parameter,
+            component,
+        };
+        Expr::new(self, self.recorded.borrow_mut().intern(node, kind))
+    }
+
+    /// The function's next parameter: a real number.
+    pub fn real(&self, name: &'static str) -> Real<'_> {
+        self.component(self.parameter(name, ParameterKind::Real), None, Kind::Real)
+    }
+
+    /// The function's next parameter: an unsigned integer.
+    pub fn word(&self, name: &'static str) -> Word<'_> {
+        self.component(self.parameter(name, ParameterKind::Word), None, Kind::Word)
+    }
+
+    /// The function's next parameter: three real numbers.
+    pub fn vector(&self, name: &'static str) -> Vec3<Real<'_>> {
+        let parameter = self.parameter(name, ParameterKind::Vector);
+        let [x, y, z] = [0, 1, 2].map(|k| self.component(parameter, Some(k), Kind::Real));
+        vec3(x, y, z)
     }
 }
 

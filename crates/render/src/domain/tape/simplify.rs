@@ -3,9 +3,9 @@
 //! Each identity gives the same bits as the operation it replaces, under the tape's contract: values are finite
 //! and the sign of zero is not kept.
 
-use super::Recorded;
 use super::apply::apply;
 use super::node::{Id, Kind, Node, Op};
+use super::recorded::Recorded;
 
 const ZERO: u32 = 0;
 const MINUS_ZERO: u32 = 0x8000_0000;
