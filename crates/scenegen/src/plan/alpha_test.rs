@@ -2,20 +2,10 @@
 
 use residual_render::program::AlphaTestNode;
 
+use super::opacity::Opacity;
 use super::program::Builder;
 use crate::desc::{AlphaMode, MaterialDesc};
 use crate::effect::Effect;
-
-/// What alpha makes of a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Opacity {
-    /// It is there everywhere.
-    Opaque,
-    /// It is there where a test passes.
-    Tested,
-    /// It is nowhere.
-    Transparent,
-}
 
 impl Builder<'_> {
     /// Whether alpha can fail its test, and whether it always does.

@@ -4,7 +4,8 @@ use residual_render::domain::Buffer;
 use residual_render::program::{Leaf, Program, Source};
 use residual_render::triangle::TriangleRecord;
 
-use super::{Binding, Plan};
+use super::options::Binding;
+use super::planned::Plan;
 
 /// A decision of the plan.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -10,7 +10,9 @@ use residual_render::surface::{
 use residual_render::triangle::TriangleRecord;
 
 use super::camera::Bounds;
-use super::{Materials, PlanError, PlannedMaterial, PlannedObject};
+use super::error::PlanError;
+use super::planned::PlannedObject;
+use super::planned_materials::{Materials, PlannedMaterial};
 use crate::desc::{InstanceDesc, MeshDesc, SceneDesc, Warning, WarningKind};
 
 /// What packing found out.

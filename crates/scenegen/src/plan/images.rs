@@ -6,7 +6,7 @@ use residual_render::domain::Buffer;
 use residual_render::scene_data::SceneData;
 use residual_render::texture::{AnyFormat, ImageParam, srgb_table};
 
-use super::PlanError;
+use super::error::PlanError;
 use crate::desc::{ImageDesc, SceneDesc, Texels};
 
 /// The images in use, with where they lie among the texels.

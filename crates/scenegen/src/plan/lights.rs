@@ -12,7 +12,8 @@ use residual_render::texture::srgb_table;
 
 use super::geometry::Geometry;
 use super::images::Images;
-use super::{LightKindUse, Materials};
+use super::planned::LightKindUse;
+use super::planned_materials::Materials;
 use crate::desc::{
     ColorInput, EnvironmentDesc, ImageDesc, LightDesc, LightKind, SceneDesc, Texels,
 };

@@ -5,13 +5,15 @@ use std::collections::BTreeMap;
 use residual_render::surface::Attributes;
 use residual_render::tracer::{DebugView, TracerNode};
 
-use super::alpha_test::Opacity;
 use super::closed::is_closed;
 use super::geometry::is_smooth;
 use super::images::Images;
+use super::opacity::Opacity;
+use super::options::{CullingRule, PlanOptions};
+use super::planned::MaterialUse;
+use super::planned_materials::{Materials, PlannedMaterial};
 use super::program::Builder;
 use super::sources::Sources;
-use super::{CullingRule, MaterialUse, Materials, PlanOptions, PlannedMaterial};
 use crate::desc::{SceneDesc, SurfaceDesc, Warning};
 
 /// Plans the materials of all instanced meshes that are seen.

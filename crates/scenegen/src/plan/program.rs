@@ -6,7 +6,7 @@ use residual_render::program::{
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 
-use super::alpha_test::Opacity;
+use super::opacity::Opacity;
 use super::sources::Sources;
 use crate::desc::{MaterialDesc, NormalMap, Warning};
 use crate::effect::Effect;

@@ -9,8 +9,8 @@ use residual_render::texture::{
     AnyFilter, AnyFormat, AnyWrap, ColorParam, Image, TransformParam, UvMap,
 };
 
-use super::Binding;
 use super::images::Images;
+use super::options::Binding;
 use crate::desc::{
     ColorInput, Dismissed, Filter, ScalarInput, SceneDesc, Texels, TextureUse, Wrap,
 };

@@ -1,0 +1,22 @@
+//! Why a scene has no plan.
+
+/// What planning a scene can fail at.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// The camera asked for is not there.
+    #[error("there is no camera {wanted}; the scene has {available}")]
+    NoSuchCamera {
+        /// As the user wrote it.
+        wanted: String,
+        /// What there is.
+        available: String,
+    },
+    /// The scene needs more than 2³² words of something.
+    #[error(
+        "the scene is too large: its {what} do not fit 32-bit indices; split it or simplify it"
+    )]
+    TooLarge {
+        /// What is too large.
+        what: &'static str,
+    },
+}

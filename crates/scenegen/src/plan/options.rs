@@ -1,0 +1,64 @@
+//! What the user chooses of a plan.
+
+use residual_render::layer::Layers;
+use residual_render::sampler::AnySampler;
+use residual_render::tracer::TracerNode;
+
+use super::camera_choice::CameraChoice;
+
+/// When an input's value is known to the compiler.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Binding {
+    /// 0 and 1, which remove code, are constants; other numbers are parameters, so that materials of the same
+    /// structure share a program and an edited colour needs no compiler.
+    #[default]
+    Structure,
+    /// Every number is a constant, as in the thesis.
+    Constants,
+}
+
+/// Which triangles are seen from behind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CullingRule {
+    /// Single-sided surfaces that transmit nothing are seen, block and emit from their front only.
+    #[default]
+    Gltf,
+    /// Both sides of every surface block light.
+    None,
+}
+
+/// The user's choices.
+#[derive(Debug, Clone)]
+pub struct PlanOptions {
+    /// Binding times.
+    pub binding: Binding,
+    /// Which camera.
+    pub camera: CameraChoice,
+    /// Width and height of the image in pixels.
+    pub size: [u32; 2],
+    /// Culling.
+    pub culling: CullingRule,
+    /// All triangles are flat, whatever normals they have.
+    pub flat_normals: bool,
+    /// Sampler.
+    pub sampler: AnySampler,
+    /// What is computed along rays.
+    pub tracer: TracerNode,
+    /// What is kept of pixels beside radiance.
+    pub layers: Layers,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        Self {
+            binding: Binding::default(),
+            camera: CameraChoice::default(),
+            size: [640, 480],
+            culling: CullingRule::default(),
+            flat_normals: false,
+            sampler: AnySampler::Sobol,
+            tracer: TracerNode::default(),
+            layers: Layers::NONE,
+        }
+    }
+}

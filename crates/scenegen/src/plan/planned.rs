@@ -1,0 +1,90 @@
+//! A plan and what it says of the scene's objects, materials and lights.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use residual_render::domain::Buffer;
+use residual_render::program::Structure;
+use residual_render::scene_data::SceneData;
+use residual_render::tracer::TracerNode;
+use residual_render::triangle::ObjectRecord;
+
+use super::options::Binding;
+use crate::desc::{Dismissed, Warning};
+
+/// A scene, analysed.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The scene's name.
+    pub name: String,
+    /// When inputs are known.
+    pub binding: Binding,
+    /// The static half.
+    pub structure: Structure,
+    /// The dynamic half.
+    pub data: SceneData,
+    /// For each program, the materials that use it.
+    pub materials: Vec<Vec<MaterialUse>>,
+    /// What is seen, in the order of its triangles: a triangle's object is an index into this list.
+    pub objects: Vec<PlannedObject>,
+    /// For each kind of light, the lights of that kind.
+    pub lights: Vec<LightKindUse>,
+    /// The camera that was chosen.
+    pub camera_name: String,
+    /// Length of the diagonal of the box around everything.
+    pub diagonal: f32,
+    /// What was changed or left out.
+    pub warnings: Vec<Warning>,
+    /// What the scene has and the image does not need.
+    pub dismissed: Vec<Dismissed>,
+}
+
+impl Plan {
+    /// Fills [`Buffer::Objects`], which is empty unless a renderer asks for the materials of objects.
+    pub(super) fn pack_objects(&mut self) {
+        self.data.buffer_mut(Buffer::Objects).clear();
+        for object in &self.objects {
+            let material = object.material as u32;
+            self.data.push(ObjectRecord { material });
+        }
+    }
+
+    /// How far a tracer reaches unless it is told: [`reach`](residual_render::tracer::TracerOptions::reach).
+    pub fn default_reach(&self) -> f32 {
+        match self.structure.tracer {
+            TracerNode::AmbientOcclusion => 0.1 * self.diagonal,
+            TracerNode::Path | TracerNode::Debug(_) => self.diagonal,
+        }
+    }
+}
+
+/// An instance of a mesh that is seen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlannedObject {
+    /// The instance's name.
+    pub name: String,
+    /// Index of its material in the description.
+    pub material: usize,
+    /// Its triangles.
+    pub triangles: Range<u32>,
+}
+
+/// A material that uses a program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MaterialUse {
+    /// Its name.
+    pub name: String,
+    /// Names of the images that it reads, by their slots among its parameters.
+    pub images: BTreeMap<u32, String>,
+    /// Its surfaces are not seen from behind.
+    pub culled: bool,
+}
+
+/// The lights of a kind.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LightKindUse {
+    /// How many there are.
+    pub count: usize,
+    /// Where they come from, such as `light "Sun"`, each once.
+    pub sources: Vec<String>,
+}

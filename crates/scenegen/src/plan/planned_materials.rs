@@ -1,0 +1,38 @@
+//! What the materials of a scene amount to.
+
+use residual_render::program::Program;
+
+use super::planned::MaterialUse;
+use crate::desc::Dismissed;
+
+/// What a triangle's material amounts to.
+#[derive(Debug, Clone)]
+pub(super) struct PlannedMaterial {
+    /// Index of its program.
+    pub(super) program: u32,
+    /// First word of its parameters.
+    pub(super) params: u32,
+    /// Its surfaces are not seen from behind.
+    pub(super) culled: bool,
+    /// It has an alpha test.
+    pub(super) alpha_tested: bool,
+}
+
+/// All materials, planned. Those that no instance uses, or whose surfaces are never there, are not.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Materials {
+    pub(super) programs: Vec<Program>,
+    pub(super) uses: Vec<Vec<MaterialUse>>,
+    pub(super) params: Vec<u32>,
+    /// By the material's index in the description.
+    pub(super) planned: Vec<Option<PlannedMaterial>>,
+    pub(super) dismissed: Vec<Dismissed>,
+}
+
+impl Materials {
+    pub(super) fn of(&self, material: usize) -> &PlannedMaterial {
+        self.planned[material]
+            .as_ref()
+            .expect("materials of visible meshes are planned")
+    }
+}
