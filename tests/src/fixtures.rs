@@ -1,11 +1,12 @@
 //! Small scenes, built in code, that between them call for every effect.
 
-use glam::{Affine3A, Mat3, Quat, Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use residual_scenegen::desc::{
-    AlphaMode, CameraDesc, ColorInput, EnvironmentDesc, Filter, ImageDesc, InstanceDesc, LightDesc,
-    LightKind, MaterialDesc, MeshDesc, MetallicRoughness, NormalMap, Phong, Projection,
-    ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureDesc, TextureUse, Wrap,
+    AlphaMode, ColorInput, Filter, LightKind, MaterialDesc, MeshDesc, MetallicRoughness, NormalMap,
+    Phong, Projection, ScalarInput, SceneDesc, SurfaceDesc, Wrap,
 };
+
+pub use crate::builder::Builder;
 
 /// A colour without a texture.
 pub fn color(factor: [f32; 3]) -> ColorInput {
@@ -127,130 +128,6 @@ pub fn sphere(centre: [f32; 3], radius: f32) -> MeshDesc {
         triangles: (0..ROWS)
             .flat_map(|row| (0..COLUMNS).flat_map(move |column| cell(row, column)))
             .collect(),
-    }
-}
-
-/// A scene in the making.
-#[derive(Default)]
-pub struct Builder {
-    scene: SceneDesc,
-}
-
-impl Builder {
-    /// An empty scene of this name.
-    pub fn new(name: &str) -> Self {
-        Self {
-            scene: SceneDesc {
-                name: name.to_owned(),
-                ..SceneDesc::default()
-            },
-        }
-    }
-
-    /// Adds meshes of one material.
-    pub fn add(&mut self, material: MaterialDesc, meshes: impl IntoIterator<Item = MeshDesc>) {
-        for mesh in meshes {
-            let number = self.scene.meshes.len();
-            self.scene.instances.push(InstanceDesc {
-                name: format!("node {number}"),
-                mesh: number,
-                transform: Affine3A::IDENTITY,
-            });
-            self.scene.meshes.push(MeshDesc {
-                material: self.scene.materials.len(),
-                ..mesh
-            });
-        }
-        self.scene.materials.push(material);
-    }
-
-    /// Adds a light.
-    pub fn light(&mut self, kind: LightKind, intensity: [f32; 3]) {
-        self.scene.lights.push(LightDesc {
-            name: "light".to_owned(),
-            kind,
-            intensity,
-        });
-    }
-
-    /// Adds a camera that looks from one point at another.
-    pub fn camera(&mut self, name: &str, eye: [f32; 3], target: [f32; 3], projection: Projection) {
-        let (position, target) = (Vec3::from(eye), Vec3::from(target));
-        let back = (position - target).normalize();
-        let right = Vec3::Y.cross(back).normalize();
-        let rotation = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
-        self.scene.cameras.push(CameraDesc {
-            name: name.to_owned(),
-            position,
-            rotation,
-            projection,
-        });
-    }
-
-    /// Adds a coloured image of bytes, all texels different; its alpha takes all values.
-    pub fn bytes(&mut self, width: u32, height: u32) -> usize {
-        let texel = |i: u32| {
-            let x = i.wrapping_mul(2_654_435_761) >> 7;
-            [
-                x as u8,
-                (x >> 8) as u8,
-                (x >> 16) as u8,
-                (i * 255 / (width * height - 1)) as u8,
-            ]
-        };
-        self.image(
-            width,
-            height,
-            Texels::Rgba8((0..width * height).map(texel).collect()),
-        )
-    }
-
-    /// Adds an image of floating-point numbers, brighter at the top.
-    pub fn floats(&mut self, width: u32, height: u32) -> usize {
-        let texel = |i: u32| {
-            let (x, y) = (i % width, i / width);
-            let up = 1.0 - y as f32 / height as f32;
-            [up * 1.5, up + 0.1 * (x % 3) as f32, 0.4, 1.0]
-        };
-        self.image(
-            width,
-            height,
-            Texels::RgbaF32((0..width * height).map(texel).collect()),
-        )
-    }
-
-    fn image(&mut self, width: u32, height: u32, texels: Texels) -> usize {
-        let name = format!("image {}", self.scene.images.len());
-        self.scene.images.push(ImageDesc {
-            name,
-            width,
-            height,
-            texels,
-        });
-        self.scene.images.len() - 1
-    }
-
-    /// Adds a texture.
-    pub fn texture(&mut self, image: usize, wrap: [Wrap; 2], filter: Filter) -> TextureUse {
-        self.scene.textures.push(TextureDesc {
-            image,
-            wrap,
-            filter,
-        });
-        TextureUse {
-            texture: self.scene.textures.len() - 1,
-            uv_set: 0,
-            transform: None,
-        }
-    }
-
-    /// The scene.
-    ///
-    /// # Panics
-    /// If it breaks an invariant of descriptions.
-    pub fn finish(self) -> SceneDesc {
-        self.scene.validate().expect("a valid fixture");
-        self.scene
     }
 }
 
@@ -413,11 +290,7 @@ pub fn textures() -> SceneDesc {
         [sheet([-3.0, -2.0, -1.0], [6.0, 0.0, 0.0], [0.0, 4.0, 0.0])],
     );
     let sky = b.floats(16, 8);
-    b.scene.environment = Some(EnvironmentDesc {
-        image: sky,
-        strength: 0.8,
-        rotation: 0.7,
-    });
+    b.environment(sky, 0.8, 0.7);
     b.camera(
         "flat",
         [0.5, 0.4, 5.0],

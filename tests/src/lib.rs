@@ -3,6 +3,7 @@
 //! Tests go the way of the data through public functions: file or [`fixtures`] → description → plan → renderer →
 //! film. Tests of the command line run it as a process.
 
+mod builder;
 pub mod fixtures;
 pub mod library;
 mod parts;

@@ -1,4 +1,6 @@
 //! Tiny scenes, each with one thing that the plainest has not: what is emitted for them is kept in `golden/`.
+//!
+//! Longer than 400 lines: one entry for each scene, which read as a table.
 
 use glam::{Vec2, Vec3, Vec4};
 use residual_render::sampler::AnySampler;

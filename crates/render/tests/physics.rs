@@ -2,10 +2,13 @@
 //! tests are judged together (Šidák), and the judges themselves are shown to reject what is wrong.
 
 mod bsdf_albedo;
+mod bsdf_furnace;
 mod bsdf_physics;
 mod bsdf_sampling;
 mod domain;
+mod domain_formulas;
 mod elementary;
+mod environment_light;
 mod lights;
 mod microfacet;
 mod sampler;

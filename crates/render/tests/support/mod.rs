@@ -1,6 +1,9 @@
 //! What the topics share: random numbers, statistics, oracles, and scenes made by hand.
 
+pub(crate) mod agreement;
 pub(crate) mod alias;
+pub(crate) mod bsdfs;
+pub(crate) mod irradiance;
 pub(crate) mod random;
 pub(crate) mod scenes;
 pub(crate) mod stats;

@@ -1,10 +1,9 @@
 //! What a tape leaves out: constants, what changes nothing, what is not used, and branches without need.
 
-mod common;
-
-use common::{ifs, ops};
 use residual_render::domain::tape::{Op, Outputs, Record, Statement, Tape};
 use residual_render::domain::{Buffers, Domain};
+
+use crate::common::{ifs, ops};
 
 #[test]
 fn branches_on_constants_are_not_recorded() {

@@ -1,161 +1,25 @@
-//! A renderer that could do more than its scene calls for gives the same bits (hard case N-07); and what a scene calls
-//! for depends on whether it matters, not on how it is written down.
-
-use std::collections::BTreeMap;
+//! What a scene calls for: factors, texels and lights that matter.
 
 use glam::Vec3;
-use residual_device_cpu::{Interpreter, LaneCount};
-use residual_render::domain::Buffer;
-use residual_render::light::EnvironmentHeader;
-use residual_render::program::{LightNode, Structure};
-use residual_render::scene_data::SceneData;
 use residual_scenegen::desc::{
     AlphaMode, ColorInput, EnvironmentDesc, Filter, ImageDesc, LightDesc, LightKind, MaterialDesc,
     NormalMap, Phong, ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
 };
 use residual_scenegen::effects::{Effect, Effects};
-use residual_scenegen::plan::{LightKindUse, MaterialUse, Plan, PlanOptions, plan};
+use residual_scenegen::plan::{PlanOptions, plan};
 use residual_tests::fixtures::{
     Builder, color, material, matte, metallic_roughness, scalar, sheet,
 };
-use residual_tests::pictures::first_difference;
-use residual_tests::tiny::{self, SIZE};
-use residual_tests::{Look, Prepared};
-
-/// What a renderer of a plan shows of a scene's data.
-fn picture(plan: &Plan, structure: &Structure) -> Vec<[f32; 3]> {
-    let prepared = Prepared::new(plan, LaneCount::Eight);
-    let renderer = Interpreter::new(structure.clone(), LaneCount::Eight);
-    let film = prepared.render(&renderer, &Look::new(SIZE, 8));
-    assert_eq!(film.invalid_samples(), 0);
-    film.image()
-}
-
-/// Data for an environment that is black and never picked, so that renderers can ask for it.
-fn add_black_environment(data: &mut SceneData) {
-    let bright = tiny::all()
-        .into_iter()
-        .find(|tiny| tiny.name == "environment");
-    let bright = bright.unwrap().plan().data;
-    for buffer in [Buffer::Environment, Buffer::Texels] {
-        assert!(data.buffer(buffer).is_empty());
-        data.buffer_mut(buffer).extend(bright.buffer(buffer));
-    }
-    data.change(0, |header| EnvironmentHeader {
-        strength: 0.0,
-        ..header
-    });
-}
-
-/// The plain scene's structure, with the programs and the lights of all tiny scenes: none of its triangles uses them.
-fn with_everything(plain: &Structure) -> Structure {
-    let mut structure = plain.clone();
-    for tiny in tiny::all() {
-        let other = tiny.plan().structure;
-        for program in other.programs {
-            if !structure.programs.contains(&program) {
-                structure.programs.push(program);
-            }
-        }
-        for light in other.lights {
-            if !structure.lights.contains(&light) {
-                structure.lights.push(light);
-            }
-        }
-    }
-    structure
-}
-
-#[test]
-fn what_is_not_used_changes_nothing() {
-    let plain = tiny::plain().plan();
-    let expected = picture(&plain, &plain.structure);
-    let mut seen = 0;
-    let mut same = |what: &str, plan: &Plan, structure: &Structure| {
-        assert_ne!(*structure, plain.structure, "{what}");
-        let image = picture(plan, structure);
-        assert_eq!(first_difference(&expected, &image), None, "{what}");
-        seen += 1;
-    };
-    for tiny in tiny::all() {
-        let other = tiny.plan();
-        let mut structure = plain.structure.clone();
-        let new = |program: &&_| !plain.structure.programs.contains(program);
-        structure
-            .programs
-            .extend(other.structure.programs.iter().filter(new).cloned());
-        if structure != plain.structure {
-            same(
-                &format!("the programs of {}", tiny.name),
-                &plain,
-                &structure,
-            );
-        }
-        for light in other.structure.lights {
-            if !plain.structure.lights.contains(&light) && light != LightNode::Environment {
-                let mut structure = plain.structure.clone();
-                structure.lights.push(light);
-                same(&format!("the lights of {}", tiny.name), &plain, &structure);
-            }
-        }
-    }
-    // Sides are a question to the hierarchy.
-    let mut sided = plain.clone();
-    sided.data.single_sided = vec![false; sided.data.triangle_count()];
-    assert_eq!(
-        first_difference(&expected, &picture(&sided, &plain.structure)),
-        None
-    );
-    let mut dark = plain.clone();
-    add_black_environment(&mut dark.data);
-    let mut structure = plain.structure.clone();
-    structure.lights.push(LightNode::Environment);
-    same("a black environment", &dark, &structure);
-    assert!(seen > 20, "{seen}");
-}
-
-/// The same, compiled, with everything at once.
-#[test]
-fn a_renderer_for_everything_gives_the_same_bits() {
-    let plain = tiny::plain().plan();
-    let expected = picture(&plain, &plain.structure);
-    let mut everything = plain.clone();
-    add_black_environment(&mut everything.data);
-    everything.structure = with_everything(&plain.structure);
-    let nobody = MaterialUse {
-        name: "nobody".to_owned(),
-        images: BTreeMap::new(),
-        culled: false,
-    };
-    everything.materials = vec![vec![nobody]; everything.structure.programs.len()];
-    let none = LightKindUse {
-        count: 0,
-        sources: vec!["none".to_owned()],
-    };
-    everything.lights = vec![none; everything.structure.lights.len()];
-    let effects = Effects::of(&everything);
-    // There is one camera, and one rule for sides.
-    let missing = Effect::ALL
-        .iter()
-        .filter(|effect| effects.reasons(**effect).is_empty());
-    let missing: Vec<_> = missing.collect();
-    assert_eq!(
-        missing,
-        [&Effect::BackFaceCulling, &Effect::OrthographicCamera]
-    );
-
-    let renderer = residual_driver::compile(&everything, LaneCount::Eight).unwrap();
-    let prepared = Prepared::new(&everything, LaneCount::Eight);
-    let image = prepared.render(&renderer, &Look::new(SIZE, 8)).image();
-    assert_eq!(first_difference(&expected, &image), None);
-}
 
 /// Texels of an image of bytes that are all this, but for one.
 type Image = ([u8; 4], [u8; 4]);
 
 const BLACK: Image = ([0; 4], [0; 4]);
+
 const BLACK_BUT_ONE: Image = ([0; 4], [1; 4]);
+
 const WHITE: Image = ([255; 4], [255; 4]);
+
 const WHITE_BUT_ONE: Image = ([255; 4], [254; 4]);
 
 /// A sheet under a point light, of the material that `make` makes of a texture.

@@ -1,5 +1,4 @@
 //! A scene's buffers full of random numbers, and the formulas that are run over them.
-#![allow(dead_code, reason = "each test uses some of it")]
 
 use residual_render::alias_table::AliasEntry;
 use residual_render::camera::CameraRecord;

@@ -1,0 +1,173 @@
+//! Recorded cameras, samplers and steps of tracers.
+
+use residual_render::camera::Camera;
+use residual_render::domain::{Buffers, Domain};
+use residual_render::layer::{Layer, Layers};
+use residual_render::math::vec3::vec3;
+use residual_render::program::{BoxedMaterial, CameraNode, EmissionNode, Interpreted, Structure};
+use residual_render::sampler::{AnySampler, SampleKey, Sampler};
+use residual_render::scene::Scene;
+use residual_render::surface::{Hit, Ray};
+use residual_render::texture::Input;
+use residual_render::tracer::{
+    self, DebugView, Path, PathTracer, Settings, Tracer, TracerNode, TracerOptions,
+};
+
+use crate::check::check;
+use crate::common::{Formula, Random, Yield};
+use crate::nodes::{bsdfs, hit_arguments, inputs, light_kinds, program, structure};
+
+/// Paths of the tests are shorter.
+const OPTIONS: TracerOptions = TracerOptions {
+    image: [640, 480],
+    seed: 0,
+    max_depth: 100,
+    roulette_from: 5,
+    reach: 3.0,
+};
+
+struct CameraAndSampler(CameraNode, AnySampler);
+
+impl Formula for CameraAndSampler {
+    fn name(&self) -> String {
+        format!("{:?} {:?}", self.0, self.1)
+    }
+    fn arguments(&self, random: &mut Random) -> (Vec<f32>, Vec<u32>) {
+        (
+            vec![],
+            vec![
+                random.word() % 4096,
+                random.word() % 4096,
+                random.word(),
+                random.word(),
+                random.word() % 64,
+            ],
+        )
+    }
+    fn run<D: Domain>(&self, d: D, _: &[D::F], words: &[D::U]) -> Yield<D> {
+        let &[x, y, index, seed, dimension] = words else {
+            unreachable!()
+        };
+        let key = SampleKey::new(d, x, y, index, seed);
+        let camera = self.0.boxed::<D>();
+        let mut out = Yield::new();
+        out.reals.extend(self.1.pair(d, key, dimension));
+        let tracer = PathTracer {
+            sampler: self.1,
+            settings: Settings {
+                seed,
+                ..Settings::new(d, &OPTIONS)
+            },
+        };
+        let Path {
+            ray,
+            throughput,
+            pdf,
+            key,
+            depth,
+        } = tracer.on_emit(d, &camera, [x, y], index);
+        let through = camera.ray(d, [out.reals[0], out.reals[1]]);
+        for ray in [ray, through] {
+            out.vector(ray.org);
+            out.vector(ray.dir);
+            out.real(ray.tmax);
+        }
+        out.vector(throughput);
+        out.real(pdf);
+        out.words.extend([key.pixel, key.index, depth]);
+        out
+    }
+}
+
+#[test]
+fn cameras_and_samplers() {
+    for camera in [CameraNode::Perspective, CameraNode::Orthographic] {
+        for sampler in [AnySampler::Independent, AnySampler::Sobol] {
+            check(&CameraAndSampler(camera.clone(), sampler));
+        }
+    }
+}
+
+/// The step of a tracer at a hit, with all layers.
+struct AnyStep(TracerNode);
+
+impl Formula for AnyStep {
+    fn name(&self) -> String {
+        format!("{:?}", self.0)
+    }
+    fn arguments(&self, random: &mut Random) -> (Vec<f32>, Vec<u32>) {
+        let (mut reals, mut words) = hit_arguments(random);
+        reals.extend([0; 4].map(|_| random.between(0.1, 1.0)));
+        words.extend([random.word(), random.word(), 1 + random.word() % 9]);
+        (reals, words)
+    }
+    fn run<D: Domain>(&self, d: D, r: &[D::F], words: &[D::U]) -> Yield<D> {
+        let &[prim, pixel, index, depth] = words else {
+            unreachable!()
+        };
+        let mut program = program(bsdfs().pop().unwrap(), inputs(false));
+        program.emission = Some(EmissionNode {
+            radiance: Input(0),
+            double_sided: false,
+        });
+        let layers: Layers = Layer::ALL.into_iter().collect();
+        let structure = Structure {
+            tracer: self.0,
+            layers,
+            ..structure(light_kinds())
+        };
+        let scene = Interpreted::<D>::new(&structure, &Buffers::EMPTY);
+        let material = BoxedMaterial::<D>::new(&program);
+        let dir = vec3(r[2], r[3], r[4]);
+        let hit = Hit {
+            u: r[0],
+            v: r[1],
+            prim,
+        };
+        let path = Path {
+            ray: Ray::unbounded(d, -dir, dir),
+            throughput: vec3(r[5], r[6], r[7]),
+            pdf: r[8],
+            key: SampleKey { pixel, index },
+            depth,
+        };
+        let tracer = scene.tracer(Settings::new(d, &OPTIONS));
+        let step = tracer::shade(d, &tracer, &path, &hit, &material, scene.lights());
+        let mut out = Yield::new();
+        if let Some(seen) = step.seen {
+            out.vector(seen);
+        }
+        let features = step.features.expect("there are layers");
+        out.truths.push(features.first);
+        out.reals.extend(features.channels(layers));
+        if let Some(shadow) = step.shadow {
+            out.vector(shadow.ray.org);
+            out.vector(shadow.ray.dir);
+            out.real(shadow.ray.tmax);
+            out.vector(shadow.contribution);
+            out.truths.push(shadow.active);
+        }
+        if let Some(bounce) = step.bounce {
+            out.vector(bounce.path.ray.org);
+            out.vector(bounce.path.ray.dir);
+            out.vector(bounce.path.throughput);
+            out.real(bounce.path.pdf);
+            out.words.push(bounce.path.depth);
+            out.truths.push(bounce.active);
+        }
+        if let Some(seen) = tracer.on_miss(d, &path, scene.lights()) {
+            out.vector(seen);
+        }
+        out
+    }
+}
+
+#[test]
+fn steps_of_all_tracers() {
+    check(&AnyStep(TracerNode::Path));
+    check(&AnyStep(TracerNode::AmbientOcclusion));
+    for view in DebugView::ALL {
+        // A path of this tracer is at its end at once, which the recorder cannot know.
+        check(&AnyStep(TracerNode::Debug(view)));
+    }
+}

@@ -1,0 +1,212 @@
+//! Printed WGSL: naga accepts it, nothing in it is dead, and it is the same every time.
+
+mod naga_checks;
+mod structures;
+
+use residual_render::domain::tape::{Outputs, Record, Tape};
+use residual_render::domain::{Buffer, Domain};
+use residual_render::layer::{Layer, Layers};
+use residual_render::program::{BsdfNode, CameraNode, ColorNode, LightNode, ScalarNode, Structure};
+use residual_render::sampler::AnySampler;
+use residual_render::surface::Attributes;
+use residual_render::texture::Input;
+use residual_render::tracer::{DebugView, TracerNode};
+use residual_scenegen::emit::wgsl::wgsl_function;
+use residual_scenegen::emit::wgsl_module;
+
+use crate::naga_checks::{accept, no_dead_code};
+use crate::structures::{bsdfs, color, everything, images, lights, program, scalar, structure};
+
+#[test]
+fn every_bsdf() {
+    for bsdf in bsdfs() {
+        no_dead_code(&wgsl_module(&structure(vec![program(bsdf)], vec![])));
+    }
+}
+
+#[test]
+fn every_bsdf_with_constants() {
+    for (c, s) in [(0.0, 0.0), (1.0, 1.0), (0.25, 0.5), (1.0, 1.5)] {
+        for bsdf in bsdfs() {
+            let mut program = program(bsdf);
+            program.inputs = vec![
+                color("first", ColorNode::Const([c; 3])),
+                color("second", ColorNode::Const([1.0 - c; 3])),
+                scalar("third", ScalarNode::Const(s)),
+                scalar("fourth", ScalarNode::Const(s)),
+            ];
+            let text = wgsl_module(&structure(vec![program], vec![]));
+            no_dead_code(&text);
+            assert!(
+                !text.contains(" params:"),
+                "constants are not loaded\n{text}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_image() {
+    for image in images() {
+        let mut program = program(BsdfNode::Conductor {
+            color: Input(0),
+            roughness: Input(2),
+        });
+        program.attributes = Attributes {
+            uv0: true,
+            uv1: true,
+            ..Attributes::default()
+        };
+        program.inputs[0] = color("color", ColorNode::Image(image));
+        program.inputs[2] = scalar("roughness", ScalarNode::Image(image));
+        let text = wgsl_module(&structure(vec![program], vec![]));
+        no_dead_code(&text);
+        assert!(text.contains(" texels:"));
+    }
+}
+
+#[test]
+fn every_light() {
+    for light in lights() {
+        let matte = program(BsdfNode::Diffuse { albedo: Input(0) });
+        let text = wgsl_module(&structure(vec![matte], vec![light.clone()]));
+        no_dead_code(&text);
+        assert!(text.contains("shadow_contribution"));
+        assert_eq!(text.contains("fn miss"), light == LightNode::Environment);
+    }
+}
+
+#[test]
+fn every_camera_and_sampler() {
+    for camera in [CameraNode::Perspective, CameraNode::Orthographic] {
+        for sampler in [AnySampler::Independent, AnySampler::Sobol] {
+            let text = wgsl_module(&Structure {
+                camera: camera.clone(),
+                sampler,
+                ..structure(vec![], vec![])
+            });
+            no_dead_code(&text);
+            assert!(
+                !text.contains("light") && !text.contains("fn miss"),
+                "a scene without lights picks none"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_tracer_and_layer() {
+    let tracers = [
+        (TracerNode::Path, [true, true]),
+        (TracerNode::AmbientOcclusion, [true, false]),
+        (TracerNode::Debug(DebugView::Normals), [false, false]),
+        (TracerNode::Debug(DebugView::Depth), [false, false]),
+    ];
+    for (tracer, [shadow, bounce]) in tracers {
+        for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
+            let text = wgsl_module(&Structure {
+                tracer,
+                layers,
+                ..everything()
+            });
+            no_dead_code(&text);
+            assert_eq!(text.contains("shadow_active"), shadow);
+            assert_eq!(text.contains("bounce_active"), bounce);
+            assert_eq!(text.contains("albedo: vec3f"), layers != Layers::NONE);
+        }
+    }
+}
+
+#[test]
+fn everything_at_once_and_always_the_same() {
+    let text = wgsl_module(&everything());
+    no_dead_code(&text);
+    assert_eq!(text, wgsl_module(&everything()));
+    for buffer in [Buffer::Params, Buffer::Texels, Buffer::Environment] {
+        assert!(text.contains(&format!("@binding({})", buffer as usize)));
+    }
+    assert!(
+        text.lines()
+            .all(|line| !line.contains("inf") || line.contains("infinite"))
+    );
+    if let Ok(path) = std::env::var("RESIDUAL_WGSL_OUT") {
+        std::fs::write(path, text).unwrap();
+    }
+}
+
+#[test]
+fn constants_leave_a_short_program() {
+    let mut program = program(BsdfNode::Diffuse { albedo: Input(0) });
+    program.inputs.truncate(1);
+    program.inputs[0] = color("albedo", ColorNode::Const([0.5, 0.25, 0.125]));
+    let text = wgsl_module(&structure(vec![program], vec![]));
+    for absent in [
+        "params",
+        "indices",
+        "normals",
+        "if ",
+        "shadow",
+        "seen",
+        "program_0_alpha_test",
+    ] {
+        assert!(!text.contains(absent), "{absent} is not called for\n{text}");
+    }
+}
+
+#[test]
+fn numbers_are_read_back_as_they_were() {
+    let numbers = [
+        1e-37,
+        0.1,
+        1.0,
+        16_777_216.0,
+        f64::from(f32::MAX),
+        f64::from(f32::MIN_POSITIVE),
+        -0.3,
+    ];
+    for number in numbers {
+        let tape = Tape::new();
+        let d = Record::new(&tape);
+        let x = tape.real("x");
+        let text = wgsl_function(
+            &tape.function("f", Outputs::new().real("y", d.max(x, d.lit(number)))),
+            "",
+        );
+        let module = accept(&text);
+        let (_, function) = module.functions.iter().next().unwrap();
+        let found = function
+            .expressions
+            .iter()
+            .find_map(|(_, expression)| match expression {
+                naga::Expression::Literal(naga::Literal::F32(value)) => Some(*value),
+                _ => None,
+            });
+        assert_eq!(found, Some(number as f32), "{text}");
+    }
+}
+
+#[test]
+fn operations_without_finite_value_are_printed() {
+    let tape = Tape::new();
+    let d = Record::new(&tape);
+    let (x, one, zero) = (tape.real("x"), d.lit(1.0), d.lit(0.0));
+    let outputs = Outputs::new()
+        .real("quotient", d.select(d.lt(x, one), one / zero, x))
+        .real("root", d.sqrt(-one))
+        .real("bits", d.from_bits(d.uint(0x7fc0_0000)));
+    no_dead_code(&wgsl_function(&tape.function("f", outputs), "Three"));
+}
+
+#[test]
+#[should_panic(expected = "is used 1 times")]
+fn dead_variables_are_found() {
+    no_dead_code("\nfn f(x: f32) -> f32 {\n    let v0 = x * 2.0f;\n    return x;\n}\n");
+}
+
+#[test]
+#[should_panic(expected = "globals")]
+fn dead_buffers_are_found() {
+    no_dead_code(
+        "@group(0) @binding(0) var<storage, read> params: array<u32>;\n\nfn f(x: f32) -> f32 {\n    return x;\n}\n",
+    );
+}

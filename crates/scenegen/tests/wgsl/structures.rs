@@ -1,0 +1,207 @@
+//! Structures to print, between them all that can be printed.
+
+use residual_render::bsdf::AnyInterface;
+use residual_render::layer::Layers;
+use residual_render::program::{
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, EmissionNode, ImageNode, InputNode, LightNode,
+    NormalNode, Program, ScalarNode, SourceNode, Structure,
+};
+use residual_render::sampler::AnySampler;
+use residual_render::surface::Attributes;
+use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Input, UvMap};
+use residual_render::tracer::TracerNode;
+
+pub(crate) fn color(name: &'static str, node: ColorNode) -> InputNode {
+    InputNode {
+        name,
+        source: SourceNode::Color(node),
+    }
+}
+
+pub(crate) fn scalar(name: &'static str, node: ScalarNode) -> InputNode {
+    InputNode {
+        name,
+        source: SourceNode::Scalar(node),
+    }
+}
+
+pub(crate) fn program(bsdf: BsdfNode) -> Program {
+    Program {
+        attributes: Attributes::default(),
+        inputs: vec![
+            color("first", ColorNode::Param(0)),
+            color("second", ColorNode::Param(3)),
+            scalar("third", ScalarNode::Param(6)),
+            scalar("fourth", ScalarNode::Param(7)),
+        ],
+        normal: None,
+        emission: None,
+        bsdf,
+        alpha_test: None,
+    }
+}
+
+pub(crate) fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Structure {
+    Structure {
+        programs,
+        lights,
+        camera: CameraNode::Perspective,
+        sampler: AnySampler::Sobol,
+        tracer: TracerNode::Path,
+        layers: Layers::NONE,
+    }
+}
+
+pub(crate) fn bsdfs() -> Vec<BsdfNode> {
+    let [first, second, third, fourth] = [0, 1, 2, 3].map(Input);
+    let diffuse = BsdfNode::Diffuse { albedo: first };
+    let conductor = BsdfNode::Conductor {
+        color: second,
+        roughness: third,
+    };
+    let coated = BsdfNode::CoatedDiffuse {
+        albedo: first,
+        roughness: third,
+        reflectance: second,
+        grazing: fourth,
+    };
+    let glass = |interface| BsdfNode::Dielectric {
+        transmittance: first,
+        ior: fourth,
+        interface,
+    };
+    let phong = BsdfNode::Phong {
+        color: second,
+        exponent: third,
+    };
+    let (a, b) = (
+        Box::new(coated.clone()),
+        Box::new(glass(AnyInterface::Thin)),
+    );
+    vec![
+        BsdfNode::Black,
+        diffuse.clone(),
+        conductor.clone(),
+        coated.clone(),
+        glass(AnyInterface::Solid),
+        glass(AnyInterface::Thin),
+        phong.clone(),
+        BsdfNode::Mirror {
+            reflectance: second,
+        },
+        BsdfNode::Mix {
+            a,
+            b,
+            weight: third,
+        },
+        BsdfNode::Mix {
+            a: Box::new(glass(AnyInterface::Solid)),
+            b: Box::new(conductor),
+            weight: third,
+        },
+        BsdfNode::Sum {
+            a: Box::new(diffuse),
+            b: Box::new(phong),
+            probability: third,
+        },
+    ]
+}
+
+pub(crate) fn images() -> Vec<ImageNode> {
+    let mut images = vec![];
+    for (k, format) in [
+        AnyFormat::SrgbRgba8,
+        AnyFormat::LinearRgba8,
+        AnyFormat::LinearFloat,
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
+            for u in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
+                for v in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
+                    let uv = UvMap {
+                        set: k % 2,
+                        transform: (k > 0).then_some(20),
+                    };
+                    images.push(ImageNode {
+                        slot: 8,
+                        uv,
+                        channel: k as u32 + 1,
+                        wrap: (u, v),
+                        filter,
+                        format,
+                    });
+                }
+            }
+        }
+    }
+    images
+}
+
+/// A scene with everything in it.
+pub(crate) fn everything() -> Structure {
+    let all = Attributes {
+        normals: true,
+        tangents: true,
+        uv0: true,
+        uv1: true,
+        colors: true,
+    };
+    let mut programs: Vec<Program> = bsdfs().into_iter().map(program).collect();
+    let image = images()[10];
+    let last = programs.last_mut().unwrap();
+    last.attributes = all;
+    last.inputs[0] = color(
+        "albedo",
+        ColorNode::Product(
+            Box::new(ColorNode::Image(image)),
+            Box::new(ColorNode::VertexColor),
+        ),
+    );
+    last.inputs[1] = color("normal", ColorNode::Image(images()[30]));
+    last.normal = Some(NormalNode {
+        texel: Input(1),
+        scale: Input(3),
+    });
+    last.emission = Some(EmissionNode {
+        radiance: Input(0),
+        double_sided: false,
+    });
+    last.alpha_test = Some(AlphaTestNode::AlphaBlend {
+        alpha: ScalarNode::Product(
+            Box::new(ScalarNode::Image(image)),
+            Box::new(ScalarNode::VertexColor),
+        ),
+        attributes: all,
+    });
+    programs[1].emission = Some(EmissionNode {
+        radiance: Input(1),
+        double_sided: true,
+    });
+    programs[1].alpha_test = Some(AlphaTestNode::AlphaMask {
+        alpha: ScalarNode::Param(3),
+        cutoff: ScalarNode::Const(0.5),
+        attributes: Attributes::default(),
+    });
+    structure(programs, lights())
+}
+
+pub(crate) fn lights() -> Vec<LightNode> {
+    let area = |emission, attributes| LightNode::Area {
+        emission,
+        attributes,
+    };
+    let uv0 = Attributes {
+        uv0: true,
+        ..Attributes::default()
+    };
+    vec![
+        area(ColorNode::Param(0), Attributes::default()),
+        area(ColorNode::Image(images()[0]), uv0),
+        LightNode::Point,
+        LightNode::Spot,
+        LightNode::Directional,
+        LightNode::Environment,
+    ]
+}
