@@ -7,6 +7,8 @@ mod area;
 mod environment;
 mod pick;
 mod punctual;
+#[cfg(test)]
+mod record_tests;
 
 pub use area::{Area, AreaRecord};
 pub use environment::{Environment, EnvironmentHeader, set_environment};

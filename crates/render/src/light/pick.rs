@@ -91,17 +91,3 @@ pub fn set_picks(data: &mut SceneData, entries: impl ExactSizeIterator<Item = Al
     PickHeader { count }.append_to(buffer);
     entries.for_each(|entry| entry.append_to(buffer));
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::light::{AreaRecord, PunctualRecord};
-
-    /// The kind is read before it is known which record it belongs to.
-    #[test]
-    fn every_record_begins_with_the_kind() {
-        let kind = LightRecord::offsets().kind;
-        assert_eq!(kind, AreaRecord::offsets().kind);
-        assert_eq!(kind, PunctualRecord::offsets().kind);
-    }
-}
