@@ -1,6 +1,6 @@
 //! Records: what buffers hold, each defined once, with its reader and its writer.
 //!
-//! [`record!`] declares a record as rows of four words, since lanes read rows (see
+//! `record!` declares a record as rows of four words, since lanes read rows (see
 //! [`Domain::load_rows`](crate::domain::Domain::load_rows)). The struct that it makes is generic over [`Numbers`]: over a
 //! domain it is what a formula has loaded, over [`Plain`] it is what a planner writes and a test reads back.
 

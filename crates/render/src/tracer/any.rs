@@ -19,7 +19,7 @@ pub enum TracerNode {
     Path,
     /// [`AmbientOcclusion`].
     AmbientOcclusion,
-    /// [`Debug`].
+    /// [`struct@Debug`].
     Debug(DebugView),
 }
 
