@@ -300,7 +300,7 @@ pub fn textures() -> SceneDesc {
     b.finish()
 }
 
-/// Phong surfaces and a dielectric, as OBJ files have them, under a point, a spot and a directional light and an
+/// Phong surfaces, a mirror and a dielectric, as OBJ files have them, under a point, a spot and a directional light and an
 /// emitting triangle.
 pub fn lights() -> SceneDesc {
     let mut b = Builder::new("lights");
@@ -320,9 +320,14 @@ pub fn lights() -> SceneDesc {
         [sphere([-1.1, 0.6, 0.0], 0.6)],
     );
     b.add(
-        material("mirror", phong([0.0; 3], [0.8, 0.7, 0.6], 500.0)),
+        material("polished", phong([0.0; 3], [0.8, 0.7, 0.6], 500.0)),
         [sphere([0.2, 0.5, -0.6], 0.5)],
     );
+    let mirror = SurfaceDesc::Mirror {
+        diffuse: color([0.1, 0.0, 0.2]),
+        reflectance: color([0.8, 0.7, 0.6]),
+    };
+    b.add(material("mirror", mirror), [sphere([0.0, 0.3, 1.2], 0.3)]);
     let clear = SurfaceDesc::Dielectric {
         ior: 1.4,
         transmittance: [0.9, 1.0, 0.9],

@@ -136,8 +136,17 @@ fn check_text(plan: &Plan) {
         let wanted = callers
             .iter()
             .any(|effect| !effects.reasons(*effect).is_empty());
-        assert_eq!(text.contains(word), wanted, "{}: {word}", plan.name);
+        assert_eq!(has_word(&text, word), wanted, "{}: {word}", plan.name);
     }
+}
+
+/// Whether a text has a word that is not the end of another.
+fn has_word(text: &str, word: &str) -> bool {
+    let is_whole = |start: usize| {
+        let before = text[..start].chars().next_back();
+        before.is_none_or(|c| !c.is_alphanumeric() && c != '_')
+    };
+    text.match_indices(word).any(|(start, _)| is_whole(start))
 }
 
 /// Compiles a renderer and looks where its instructions come from.

@@ -37,7 +37,7 @@ pub(super) fn associated_type(out: &mut Module, structure: &Structure) -> fmt::R
         Layers::NONE => tracer,
         layers => {
             let layers = format!("ConstLayers<{:#b}>", layers.bits());
-            let layers = Code::Word(Name::of("layer", layers));
+            let layers = Code::Word(Name::of("tracer", layers));
             Code::generic(Name::of("tracer", "Layered"), [tracer, layers])
         }
     };
@@ -61,7 +61,7 @@ pub(super) fn method(out: &mut Module, structure: &Structure) -> fmt::Result {
     let tracer = match structure.layers {
         Layers::NONE => tracer,
         _ => {
-            let layers = Code::Word(Name::of("layer", "ConstLayers"));
+            let layers = Code::Word(Name::of("tracer", "ConstLayers"));
             let fields = [("tracer", tracer), ("layers", layers)];
             Code::literal(Name::of("tracer", "Layered"), fields)
         }
