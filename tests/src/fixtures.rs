@@ -300,7 +300,7 @@ pub fn textures() -> SceneDesc {
     b.finish()
 }
 
-/// Phong surfaces, a mirror and a dielectric, as OBJ files have them, under a point, a spot and a directional light and an
+/// Phong surfaces, a mirror and a dielectric, as OBJ files have them, and a checkerboard, under a point, a spot and a directional light and an
 /// emitting triangle.
 pub fn lights() -> SceneDesc {
     let mut b = Builder::new("lights");
@@ -328,6 +328,15 @@ pub fn lights() -> SceneDesc {
         reflectance: color([0.8, 0.7, 0.6]),
     };
     b.add(material("mirror", mirror), [sphere([0.0, 0.3, 1.2], 0.3)]);
+    let tiles = SurfaceDesc::Checkerboard {
+        even: color([0.7, 0.6, 0.5]),
+        odd: color([0.2, 0.3, 0.4]),
+        squares: [9.0, 4.0],
+    };
+    b.add(
+        material("tiles", tiles),
+        [sheet([-3.0, 0.0, -3.0], [6.0, 0.0, 0.0], [0.0, 2.5, 0.0])],
+    );
     let clear = SurfaceDesc::Dielectric {
         ior: 1.4,
         transmittance: [0.9, 1.0, 0.9],

@@ -258,6 +258,22 @@ fn surfaces() -> Vec<Tiny> {
             &diffuse,
             scene(material("sheen", phong([0.0; 3])), corner()),
         ),
+        Tiny::new(
+            "checkerboard",
+            &[Effect::ProceduralTextures, Effect::TextureTransforms],
+            &[],
+            scene(
+                material(
+                    "tiles",
+                    SurfaceDesc::Checkerboard {
+                        even: color([0.7, 0.6, 0.2]),
+                        odd: color([0.1, 0.2, 0.4]),
+                        squares: [4.0, 3.0],
+                    },
+                ),
+                corner(),
+            ),
+        ),
         Tiny::new("mirror", &[Effect::MirrorReflection], &[], {
             let pane = sheet([-0.6, -0.5, 0.8], [1.1, 0.0, 0.2], [0.0, 0.9, 0.0]);
             behind(material("mirror", mirror([0.0; 3])), [pane])

@@ -27,6 +27,7 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("SrgbRgba8", &[Effect::SrgbTexels]),
     ("LinearRgba8", &[Effect::LinearTexels]),
     ("LinearFloat", &[Effect::FloatTexels]),
+    ("Checkerboard {", &[Effect::ProceduralTextures]),
     ("transform: Some", &[Effect::TextureTransforms]),
     ("set: 1", &[Effect::SecondUvSet]),
     ("VertexColor", &[Effect::VertexColors]),
@@ -65,6 +66,10 @@ const SOURCES: &[(&str, &[Effect])] = &[
     (
         "render/src/texture/image.rs",
         &[Effect::Textures, Effect::Environment],
+    ),
+    (
+        "render/src/texture/checkerboard.rs",
+        &[Effect::ProceduralTextures],
     ),
     ("render/src/light/environment.rs", &[Effect::Environment]),
     (

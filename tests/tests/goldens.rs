@@ -35,6 +35,7 @@ macro_rules! goldens {
 goldens! {
     alpha_blending
     alpha_mask
+    checkerboard
     clamp_wrap
     constants
     culling

@@ -59,6 +59,9 @@ pub(crate) struct SceneArgs {
     /// Turn of the environment about +Y
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "env", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) env_rotate: f32,
+    /// Add a checkered ground below the scene
+    #[arg(long)]
+    pub(crate) ground: bool,
     /// Fail where the scene cannot be rendered faithfully, instead of warning
     #[arg(long)]
     pub(crate) strict: bool,

@@ -30,13 +30,16 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
         strength: args.env_strength,
         rotation_degrees: args.env_rotate,
     });
-    let scene = import(
+    let mut scene = import(
         &args.scene,
         &ImportOptions {
             environment,
             strict: args.strict,
         },
     )?;
+    if args.ground {
+        scene.add_ground();
+    }
     let view = View {
         eye: args.eye.map(|v| v.0),
         dir: args.dir.map(|v| v.0),

@@ -1,7 +1,7 @@
 //! From a lane count to the tile loop in its domain.
 
 /// Calls [`render_tile`](crate::tile::render_tile) in the domain of one lane count, named by its variant of
-/// [`LaneCount`], on the machine's instruction set, with the scene that `|buffers| scene` makes.
+/// [`LaneCount`](crate::LaneCount), on the machine's instruction set, with the scene that `|buffers| scene` makes.
 #[macro_export]
 macro_rules! render_lanes {
     (One, $($rest:tt)*) => { $crate::render_lanes!(@ Scalar, $($rest)*) };

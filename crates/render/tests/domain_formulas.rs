@@ -13,7 +13,7 @@ use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, Hit, Surface};
 use residual_render::texture::{
-    AnyFilter, AnyFormat, AnyWrap, ColorSource, Const, Image, ImageParam, ScalarSource, UvMap,
+    AnyFilter, AnyFormat, AnyWrap, Checkerboard, ColorSource, Const, Image, ImageParam, ScalarSource, TransformParam, UvMap,
 };
 
 use crate::support::agreement::{Formula, any_bits, check, reals, truth, vector, words};
@@ -216,5 +216,38 @@ fn textures_agree() {
                 check(&name, &data, &Texture(image), &any_bits(2, 50));
             }
         }
+    }
+}
+
+/// A checkerboard over given coordinates.
+struct Checkers(UvMap);
+impl Formula for Checkers {
+    fn run<D: Lanes>(&self, d: D, x: &[D::U]) -> Vec<D::U> {
+        let mut surface = floor(d);
+        surface.uv[0] = [d.from_bits(x[0]), d.from_bits(x[1])];
+        let board = Checkerboard {
+            even: RED,
+            odd: Const([0.1, 0.2, 0.3]),
+            uv: self.0,
+        };
+        words(d, vector(board.color(d, &surface)))
+    }
+}
+
+#[test]
+fn checkerboards_agree() {
+    let mut data = scene(&[FLOOR]);
+    let transform = TransformParam {
+        u: vec3(3.0, 0.5, 0.1),
+        v: vec3(-0.25, 7.0, -0.3),
+    };
+    set_params(&mut data, transform);
+    let moderate = reals(51, |r| {
+        [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]
+    });
+    for transform in [None, Some(0)] {
+        let checkers = Checkers(UvMap { set: 0, transform });
+        check("checkerboard", &data, &checkers, &moderate);
+        check("checkerboard", &data, &checkers, &any_bits(2, 52));
     }
 }

@@ -1,11 +1,13 @@
 //! Textures (hard cases T-02, T-03, T-04).
 
 use residual_render::domain::{Buffer, Scalar};
+use residual_render::math::vec3::vec3;
 use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::texture::{
-    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, ColorSource, Image, ImageParam, LinearFloat,
-    Nearest, Repeat, ScalarSource, SrgbRgba8, TransformParam, UvMap, srgb_table,
+    AnyFilter, AnyFormat, AnyWrap, Bilinear, Checkerboard, Clamp, ColorSource, Const, Image,
+    ImageParam, LinearFloat, Nearest, Repeat, ScalarSource, SrgbRgba8, TransformParam, UvMap,
+    srgb_table,
 };
 
 use crate::support::random::Rng;
@@ -317,4 +319,47 @@ fn channels_and_formats() {
         format: SrgbRgba8,
     };
     assert!((full.scalar(d, &surface) - 128.0 / 255.0).abs() < 1e-7);
+}
+
+/// The colour of a square is the parity of the whole parts of its coordinates, on both sides of 0 and far away.
+#[test]
+fn checkerboards_alternate() {
+    let mut data = scene(&[FLOOR]);
+    let transform = TransformParam {
+        u: vec3(8.0, 0.0, 0.5),
+        v: vec3(0.0, 3.0, -0.25),
+    };
+    set_params(&mut data, transform);
+    let buffers = data.buffers();
+    let d = Scalar::new(&buffers);
+    let mut surface = floor(d);
+    let mut rng = Rng::new(77);
+    let mut seen = [0; 2];
+    for k in 0..10_000 {
+        let reach = if k % 2 == 0 { 3.0 } else { 50_000.0 };
+        let uv = [0; 2].map(|_| rng.range(-reach, reach) as f32);
+        surface.uv[0] = uv;
+        for transform in [None, Some(0)] {
+            let board = Checkerboard {
+                even: Const([0.0; 3]),
+                odd: Const([1.0; 3]),
+                uv: UvMap { set: 0, transform },
+            };
+            let [u, v] = uv.map(f64::from);
+            let [u, v] = match transform {
+                None => [u, v],
+                Some(_) => [8.0 * u + 0.5, 3.0 * v - 0.25],
+            };
+            // Rounding may move a point across the border of its square.
+            let near = |c: f64| (c - c.round()).abs() < 1e-6 * c.abs().max(1.0);
+            if near(u) || near(v) {
+                continue;
+            }
+            let parity = (u.floor() + v.floor()).rem_euclid(2.0);
+            let color = array(board.color(d, &surface));
+            assert_eq!(color, [parity as f32; 3], "{u} {v}");
+            seen[parity as usize] += 1;
+        }
+    }
+    assert!(seen.iter().all(|count| *count > 5_000), "{seen:?}");
 }

@@ -19,6 +19,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::PhongReflection | Effect::MirrorReflection => "matte",
         Effect::ThinTransmission | Effect::Refraction => "opaque",
         Effect::Textures => "their mean values; alpha, normal maps and emission stay",
+        Effect::ProceduralTextures => "the mean of their colours",
         Effect::BilinearFilter => "the nearest texel",
         Effect::TextureTransforms => "coordinates as they are",
         Effect::VertexColors => "white",
@@ -102,6 +103,9 @@ fn change(effect: Effect, material: &mut MaterialDesc, means: &mut Means) {
             let inputs = material.inputs_mut().into_iter();
             let textures = inputs.filter_map(|(_, input)| input.texture());
             textures.for_each(|texture| texture.transform = None);
+            if let SurfaceDesc::Checkerboard { squares, .. } = &mut material.surface {
+                *squares = [1.0; 2];
+            }
         }
         _ => change_surface(effect, &mut material.surface),
     }
@@ -129,6 +133,10 @@ fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
         }
         (Effect::MirrorReflection, SurfaceDesc::Mirror { reflectance, .. }) => {
             *reflectance = plain([0.0; 3]);
+        }
+        (Effect::ProceduralTextures, SurfaceDesc::Checkerboard { even, odd, .. }) => {
+            let mean = [0, 1, 2].map(|k| 0.5 * (even.factor[k] + odd.factor[k]));
+            (*even, *odd) = (plain(mean), plain(mean));
         }
         (Effect::Refraction, SurfaceDesc::Dielectric { transmittance, .. }) => {
             *surface = SurfaceDesc::Phong(Phong {

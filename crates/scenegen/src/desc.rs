@@ -213,6 +213,15 @@ pub enum SurfaceDesc {
         /// `Ks`.
         reflectance: ColorInput,
     },
+    /// A matte checkerboard over `TEXCOORD_0`: the ground that [`SceneDesc::add_ground`] makes.
+    Checkerboard {
+        /// Of the square from (0, 0).
+        even: ColorInput,
+        /// Of its neighbours.
+        odd: ColorInput,
+        /// Squares from 0 to 1, along u and v.
+        squares: [f32; 2],
+    },
     /// OBJ `illum` 4, 6, 7, 9 or `Tf`/`d` with refraction: a smooth dielectric.
     Dielectric {
         /// Index of refraction.

@@ -59,6 +59,11 @@ macro_rules! surface_inputs {
                 ("diffuse", Color(diffuse)),
                 ("reflectance", Color(reflectance)),
             ],
+            SurfaceDesc::Checkerboard {
+                even,
+                odd,
+                squares: _,
+            } => vec![("even", Color(even)), ("odd", Color(odd))],
             SurfaceDesc::Dielectric {
                 ior: _,
                 transmittance: _,

@@ -113,6 +113,11 @@ impl SceneDesc {
                 require(is_valid, || place("ior"), "is neither 0 nor at least 1")?;
             }
             SurfaceDesc::Phong(_) | SurfaceDesc::Mirror { .. } => {}
+            SurfaceDesc::Checkerboard { squares, .. } => require(
+                squares.iter().all(|count| count.is_finite()),
+                || place("squares"),
+                "is not finite",
+            )?,
             SurfaceDesc::Dielectric { ior, transmittance } => {
                 require(
                     ior.is_finite() && *ior > 0.0,

@@ -41,6 +41,7 @@ effects! {
     SrgbTexels = "sRGB texels",
     LinearTexels = "linear texels",
     FloatTexels = "float texels",
+    ProceduralTextures = "procedural textures",
     TextureTransforms = "texture transforms",
     SecondUvSet = "second UV set",
     VertexColors = "vertex colours",

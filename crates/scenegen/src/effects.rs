@@ -99,7 +99,10 @@ impl Effects {
                 Leaf::Constant | Leaf::Parameter => {}
                 Leaf::VertexColor => self.add(Effect::VertexColors, place),
                 Leaf::Image(image) => self.add_image(image, who),
-                Leaf::Coordinates(uv) => self.add_coordinates(uv, place),
+                Leaf::Coordinates(uv) => {
+                    self.add(Effect::ProceduralTextures, place);
+                    self.add_coordinates(uv, place);
+                }
             }
         }
         self.add_bsdf(&program.bsdf, place);

@@ -9,6 +9,7 @@ mod effect;
 pub mod effects;
 pub mod emit;
 mod fingerprint;
+mod ground;
 pub mod import;
 pub mod plan;
 

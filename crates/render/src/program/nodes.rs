@@ -38,6 +38,7 @@ nodes! {
         Image = image: ImageNode,
         Gray(number: Box<ScalarNode>),
         Product(a: Box<ColorNode>, b: Box<ColorNode>),
+        Checkerboard { even: Box<ColorNode>, odd: Box<ColorNode>, uv: UvMap },
     }
 
     /// A source of numbers.

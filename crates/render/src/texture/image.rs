@@ -288,7 +288,7 @@ pub struct UvMap {
 
 impl UvMap {
     #[inline(always)]
-    fn apply<D: Domain>(&self, d: D, surface: &Surface<D>) -> [D::F; 2] {
+    pub(super) fn apply<D: Domain>(&self, d: D, surface: &Surface<D>) -> [D::F; 2] {
         let [u, v] = surface.uv[self.set];
         match self.transform {
             None => [u, v],

@@ -4,10 +4,12 @@
 //! concrete ones contains nothing else; boxed, they are the interpreted tier's nodes. Inputs are evaluated once
 //! per point, before the BSDF, and enter it as [`Bound`] values or, interpreted, as [`Input`] numbers.
 
+mod checkerboard;
 mod image;
 mod params;
 mod srgb;
 
+pub use checkerboard::Checkerboard;
 pub use image::{
     AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8,
     MirroredRepeat, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,

@@ -121,7 +121,11 @@ fn normal_maps_emission_and_vertex_attributes() {
             "product",
             ColorNode::Product(
                 Box::new(ColorNode::VertexColor),
-                Box::new(ColorNode::Param(9)),
+                Box::new(ColorNode::Checkerboard {
+                    even: Box::new(ColorNode::Param(9)),
+                    odd: Box::new(ColorNode::VertexColor),
+                    uv: image(0).uv,
+                }),
             ),
         );
         program.inputs[2] = scalar(

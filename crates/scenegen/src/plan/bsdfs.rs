@@ -17,6 +17,10 @@ impl Builder<'_> {
                 diffuse,
                 reflectance,
             } => self.mirror(diffuse, reflectance),
+            SurfaceDesc::Checkerboard { even, odd, squares } => {
+                let albedo = self.sources.checkerboard(even, odd, *squares);
+                self.diffuse(albedo)
+            }
             SurfaceDesc::Dielectric { ior, transmittance } => {
                 let tint = self.sources.constant_color(*transmittance);
                 self.dielectric(tint, *ior, AnyInterface::Solid)

@@ -113,9 +113,10 @@ fn available_attributes(scene: &SceneDesc) -> Vec<Option<Attributes>> {
 fn encloses_a_body(scene: &SceneDesc, material: usize) -> bool {
     let transmits = |surface: &SurfaceDesc| match surface {
         SurfaceDesc::MetallicRoughness(surface) => surface.transmission.factor > 0.0,
-        SurfaceDesc::Phong(_) | SurfaceDesc::Mirror { .. } | SurfaceDesc::Dielectric { .. } => {
-            false
-        }
+        SurfaceDesc::Phong(_)
+        | SurfaceDesc::Mirror { .. }
+        | SurfaceDesc::Checkerboard { .. }
+        | SurfaceDesc::Dielectric { .. } => false,
     };
     transmits(&scene.materials[material].surface)
         && scene

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use residual_render::math::vec3::vec3;
 use residual_render::program::{ColorNode, ImageNode, ScalarNode, Source};
 use residual_render::record::BufferRecord;
 use residual_render::surface::Attributes;
@@ -192,6 +193,29 @@ impl<'a> Sources<'a> {
             node = self.color_product(node, image);
         }
         node
+    }
+
+    /// A checkerboard of two colours over the first texture coordinates, scaled.
+    pub(super) fn checkerboard(
+        &mut self,
+        even: &ColorInput,
+        odd: &ColorInput,
+        [u, v]: [f32; 2],
+    ) -> ColorNode {
+        if even == odd {
+            return self.color(even);
+        }
+        let (even, odd) = (Box::new(self.color(even)), Box::new(self.color(odd)));
+        let transform = TransformParam {
+            u: vec3(u, 0.0, 0.0),
+            v: vec3(0.0, v, 0.0),
+        };
+        let transform = match [u, v] {
+            [1.0, 1.0] => None,
+            _ => Some(self.param_record(transform)),
+        };
+        let uv = UvMap { set: 0, transform };
+        ColorNode::Checkerboard { even, odd, uv }
     }
 
     /// A scalar input.

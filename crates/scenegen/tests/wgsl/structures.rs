@@ -156,7 +156,14 @@ pub(crate) fn everything() -> Structure {
         "albedo",
         ColorNode::Product(
             Box::new(ColorNode::Image(image)),
-            Box::new(ColorNode::VertexColor),
+            Box::new(ColorNode::Checkerboard {
+                even: Box::new(ColorNode::Param(0)),
+                odd: Box::new(ColorNode::VertexColor),
+                uv: UvMap {
+                    set: 0,
+                    transform: Some(12),
+                },
+            }),
         ),
     );
     last.inputs[1] = color("normal", ColorNode::Image(images()[30]));
