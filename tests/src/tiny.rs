@@ -381,6 +381,27 @@ fn textures() -> Vec<Tiny> {
             }),
         ),
         Tiny::new(
+            "specular_texture",
+            &[
+                &TEXTURE[..],
+                &[Effect::LinearTexels, Effect::DielectricCoat],
+            ]
+            .concat(),
+            &[],
+            textured(false, REPEAT, linear, |texture| {
+                surface(
+                    "worn varnish",
+                    MetallicRoughness {
+                        specular: ScalarInput {
+                            factor: 0.9,
+                            texture: Some((texture, 0)),
+                        },
+                        ..metallic_roughness([0.5; 3], 0.0, 0.4)
+                    },
+                )
+            }),
+        ),
+        Tiny::new(
             "texture_transform",
             &and(Effect::TextureTransforms),
             &[],

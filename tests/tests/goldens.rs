@@ -61,6 +61,7 @@ goldens! {
     second_uv_set
     smooth_normals
     solid_glass
+    specular_texture
     spot_light
     texture
     texture_transform
