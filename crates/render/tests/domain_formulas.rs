@@ -13,7 +13,8 @@ use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, Hit, Surface};
 use residual_render::texture::{
-    AnyFilter, AnyFormat, AnyWrap, Checkerboard, ColorSource, Const, Image, ImageParam, ScalarSource, TransformParam, UvMap,
+    AnyFilter, AnyFormat, AnyWrap, Checkerboard, ColorSource, Const, Image, ImageParam,
+    ScalarSource, TransformParam, UvMap,
 };
 
 use crate::support::agreement::{Formula, any_bits, check, reals, truth, vector, words};
