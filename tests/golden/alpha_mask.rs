@@ -5,8 +5,8 @@ use render::camera::Perspective;
 use render::domain::{Buffers, Domain};
 use render::layer::Layers;
 use render::light::Point;
+use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
-use render::scene::MaterialVisitor;
 use render::surface::Attributes;
 use render::texture::{Bilinear, Image, LinearRgba8, Param, Product, Repeat, UvMap};
 use render::tracer::{PathTracer, Settings};
@@ -48,7 +48,7 @@ const TEXTURE_0: Image<Repeat, Repeat, Bilinear, LinearRgba8> = Image {
     format: LinearRgba8,
 };
 
-impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
+impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
     type Tracer = PathTracer<D, Sobol>;
     type Lights = (Point, ());

@@ -4,8 +4,8 @@ use render::camera::Perspective;
 use render::domain::{Buffers, Domain};
 use render::layer::Layers;
 use render::light::Environment;
+use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
-use render::scene::MaterialVisitor;
 use render::tracer::{PathTracer, Settings};
 use residual_device_cpu::generated::render;
 
@@ -32,7 +32,7 @@ impl Scene<'_> {
     pub const LAYERS: Layers = Layers::from_bits(0b0);
 }
 
-impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
+impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
     type Tracer = PathTracer<D, Sobol>;
     type Lights = (Environment, ());

@@ -4,8 +4,8 @@ use render::camera::Perspective;
 use render::domain::{Buffers, Domain};
 use render::layer::Layers;
 use render::light::Point;
+use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
-use render::scene::MaterialVisitor;
 use render::texture::{Bilinear, Image, MirroredRepeat, SrgbRgba8, UvMap};
 use render::tracer::{PathTracer, Settings};
 use residual_device_cpu::generated::render;
@@ -45,7 +45,7 @@ const TEXTURE_0: Image<MirroredRepeat, MirroredRepeat, Bilinear, SrgbRgba8> = Im
     format: SrgbRgba8,
 };
 
-impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
+impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
     type Tracer = PathTracer<D, Sobol>;
     type Lights = (Point, ());

@@ -4,8 +4,8 @@ use render::camera::Perspective;
 use render::domain::{Buffers, Domain};
 use render::layer::Layers;
 use render::light::Area;
+use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
-use render::scene::MaterialVisitor;
 use render::surface::Attributes;
 use render::texture::{Bilinear, Image, Param, Product, Repeat, SrgbRgba8, UvMap};
 use render::tracer::{PathTracer, Settings};
@@ -46,7 +46,7 @@ const TEXTURE_0: Image<Repeat, Repeat, Bilinear, SrgbRgba8> = Image {
     format: SrgbRgba8,
 };
 
-impl<D: Domain> render::scene::Scene<D> for Scene<'_> {
+impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
     type Tracer = PathTracer<D, Sobol>;
     type Lights = (

@@ -2,8 +2,8 @@
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use residual_scenegen::desc::{
-    CameraDesc, EnvironmentDesc, Filter, ImageDesc, InstanceDesc, LightDesc, LightKind,
-    MaterialDesc, MeshDesc, Projection, SceneDesc, Texels, TextureDesc, TextureUse, Wrap,
+    CameraDesc, EnvironmentDesc, Filter, ImageDesc, InstanceDesc, LightDesc, MaterialDesc,
+    MeshDesc, Projection, PunctualKind, SceneDesc, Texels, TextureDesc, TextureUse, Wrap,
 };
 
 /// A scene in the making.
@@ -41,7 +41,7 @@ impl Builder {
     }
 
     /// Adds a light.
-    pub fn light(&mut self, kind: LightKind, intensity: [f32; 3]) {
+    pub fn light(&mut self, kind: PunctualKind, intensity: [f32; 3]) {
         self.scene.lights.push(LightDesc {
             name: "light".to_owned(),
             kind,

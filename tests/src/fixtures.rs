@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3, Vec4};
 use residual_scenegen::desc::{
-    AlphaMode, ColorInput, Filter, LightKind, MaterialDesc, MeshDesc, MetallicRoughness, NormalMap,
-    Phong, Projection, ScalarInput, SceneDesc, SurfaceDesc, Wrap,
+    AlphaMode, ColorInput, Filter, MaterialDesc, MeshDesc, MetallicRoughness, NormalMap,
+    PhongSurface, Projection, PunctualKind, ScalarInput, SceneDesc, SurfaceDesc, Wrap,
 };
 
 pub use crate::builder::Builder;
@@ -49,7 +49,7 @@ pub fn glass(solid: bool) -> MetallicRoughness {
 
 /// A Lambertian surface.
 pub fn matte(albedo: [f32; 3]) -> SurfaceDesc {
-    SurfaceDesc::Phong(Phong {
+    SurfaceDesc::Phong(PhongSurface {
         diffuse: color(albedo),
         specular: color([0.0; 3]),
         exponent: scalar(0.0),
@@ -305,7 +305,7 @@ pub fn textures() -> SceneDesc {
 pub fn lights() -> SceneDesc {
     let mut b = Builder::new("lights");
     let phong = |diffuse, specular, exponent| {
-        SurfaceDesc::Phong(Phong {
+        SurfaceDesc::Phong(PhongSurface {
             diffuse: color(diffuse),
             specular: color(specular),
             exponent: scalar(exponent),
@@ -352,20 +352,20 @@ pub fn lights() -> SceneDesc {
         [tip],
     );
     b.light(
-        LightKind::Point {
+        PunctualKind::Point {
             position: Vec3::new(2.0, 2.0, 2.0),
         },
         [4.0, 4.0, 5.0],
     );
     b.light(
-        LightKind::Point {
+        PunctualKind::Point {
             position: Vec3::new(-2.0, 1.0, 2.0),
         },
         [1.0, 0.5, 0.2],
     );
     let down = Vec3::new(0.2, -1.0, -0.3).normalize();
     b.light(
-        LightKind::Spot {
+        PunctualKind::Spot {
             position: Vec3::new(-1.0, 3.0, 1.0),
             direction: down,
             inner: 0.3,
@@ -374,7 +374,7 @@ pub fn lights() -> SceneDesc {
         [12.0, 10.0, 8.0],
     );
     b.light(
-        LightKind::Directional {
+        PunctualKind::Directional {
             direction: Vec3::new(-0.4, -0.8, -0.3).normalize(),
         },
         [0.6, 0.7, 0.8],

@@ -5,8 +5,8 @@
 use glam::{Vec2, Vec3, Vec4};
 use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{
-    AlphaMode, ColorInput, EnvironmentDesc, Filter, LightKind, MaterialDesc, MeshDesc,
-    MetallicRoughness, NormalMap, Phong, Projection, ScalarInput, SceneDesc, SurfaceDesc,
+    AlphaMode, ColorInput, EnvironmentDesc, Filter, MaterialDesc, MeshDesc, MetallicRoughness,
+    NormalMap, PhongSurface, Projection, PunctualKind, ScalarInput, SceneDesc, SurfaceDesc,
     TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
@@ -69,7 +69,7 @@ fn corner() -> [MeshDesc; 2] {
 
 fn lamp(b: &mut Builder) {
     let position = Vec3::new(0.4, 0.6, 1.2);
-    b.light(LightKind::Point { position }, [3.0, 2.5, 2.0]);
+    b.light(PunctualKind::Point { position }, [3.0, 2.5, 2.0]);
 }
 
 fn camera(b: &mut Builder, projection: Projection) {
@@ -145,7 +145,7 @@ fn printed(texture: TextureUse) -> MaterialDesc {
     };
     material(
         "printed",
-        SurfaceDesc::Phong(Phong {
+        SurfaceDesc::Phong(PhongSurface {
             diffuse,
             specular: color([0.0; 3]),
             exponent: scalar(0.0),
@@ -197,7 +197,7 @@ pub fn all() -> Vec<Tiny> {
 fn surfaces() -> Vec<Tiny> {
     let diffuse = [Effect::DiffuseReflection];
     let phong = |diffuse| {
-        SurfaceDesc::Phong(Phong {
+        SurfaceDesc::Phong(PhongSurface {
             diffuse: color(diffuse),
             specular: color([0.4, 0.3, 0.2]),
             exponent: scalar(20.0),
@@ -526,7 +526,7 @@ fn lights() -> Vec<Tiny> {
             &[Effect::SpotLights],
             &point,
             lit(|b| {
-                let kind = LightKind::Spot {
+                let kind = PunctualKind::Spot {
                     position,
                     direction,
                     inner: 0.4,
@@ -539,7 +539,7 @@ fn lights() -> Vec<Tiny> {
             "directional_light",
             &[Effect::DirectionalLights],
             &point,
-            lit(|b| b.light(LightKind::Directional { direction }, [1.0, 0.9, 0.8])),
+            lit(|b| b.light(PunctualKind::Directional { direction }, [1.0, 0.9, 0.8])),
         ),
         Tiny::new("environment", &[Effect::Environment], &point, {
             let mut image = 0;

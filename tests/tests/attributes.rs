@@ -9,7 +9,7 @@ use residual_render::surface::{
 };
 use residual_render::triangle::{ObjectRecord, TriangleRecord};
 use residual_scenegen::desc::{
-    AlphaMode, Filter, InstanceDesc, MaterialDesc, MeshDesc, NormalMap, Phong, ScalarInput,
+    AlphaMode, Filter, InstanceDesc, MaterialDesc, MeshDesc, NormalMap, PhongSurface, ScalarInput,
     SceneDesc, SurfaceDesc, TextureUse, Wrap,
 };
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
@@ -77,7 +77,7 @@ fn transform(number: usize) -> Affine3A {
 fn printed(texture: TextureUse) -> SurfaceDesc {
     let mut diffuse = color([0.9; 3]);
     diffuse.texture = Some(texture);
-    SurfaceDesc::Phong(Phong {
+    SurfaceDesc::Phong(PhongSurface {
         diffuse,
         specular: color([0.0; 3]),
         exponent: scalar(0.0),

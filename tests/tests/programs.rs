@@ -2,7 +2,7 @@
 
 use residual_device_cpu::LaneCount;
 use residual_render::film::Film;
-use residual_scenegen::desc::{Filter, LightKind, MaterialDesc, SceneDesc, SurfaceDesc, Wrap};
+use residual_scenegen::desc::{Filter, MaterialDesc, PunctualKind, SceneDesc, SurfaceDesc, Wrap};
 use residual_scenegen::emit::rust;
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 use residual_tests::fixtures::{Builder, material, matte, metallic_roughness, sheet};
@@ -36,7 +36,7 @@ fn wall() -> SceneDesc {
         );
     }
     let position = glam::Vec3::new(8.0, 14.0, 6.0);
-    b.light(LightKind::Point { position }, [300.0; 3]);
+    b.light(PunctualKind::Point { position }, [300.0; 3]);
     let projection = residual_scenegen::desc::Projection::Orthographic { ymag: 10.0 };
     b.camera("front", [12.5, 10.0, 9.0], [12.5, 10.0, 0.0], projection);
     b.finish()

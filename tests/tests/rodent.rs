@@ -8,7 +8,7 @@ use glam::Vec3;
 use residual_device_cpu::LaneCount;
 use residual_render::domain::Buffer;
 use residual_render::light::set_picks;
-use residual_scenegen::desc::{LightDesc, LightKind, SceneDesc, SurfaceDesc, Texels};
+use residual_scenegen::desc::{LightDesc, PunctualKind, SceneDesc, SurfaceDesc, Texels};
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::emit::{rust, wgsl_module};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
@@ -84,7 +84,7 @@ fn specular_maps_colour_the_highlight_only() {
     let position = Vec3::new(0.0, 0.0, 3.0);
     scene.lights.push(LightDesc {
         name: "lamp".to_owned(),
-        kind: LightKind::Point { position },
+        kind: PunctualKind::Point { position },
         intensity: [5.0; 3],
     });
     let [r, g, b] = shown(&planned(&scene, Binding::Structure));

@@ -12,8 +12,8 @@ use residual_render::light::Point;
 use residual_render::material::{Material, Shading};
 use residual_render::math::{Color, Vec3};
 use residual_render::program::{ColorNode, ImageNode, Program, ScalarNode, SourceNode};
+use residual_render::renderer::{MaterialVisitor, Renderer};
 use residual_render::sampler::Sobol;
-use residual_render::scene::{MaterialVisitor, Scene};
 use residual_render::surface::{Attributes, Surface};
 use residual_render::texture::{
     Bilinear, Bound, ColorSource, Image, LinearRgba8, Param, Repeat, ScalarSource, SrgbRgba8,
@@ -211,7 +211,7 @@ struct Cases<'a> {
     attributes: Attributes,
 }
 
-impl<D: Domain> Scene<D> for Cases<'_> {
+impl<D: Domain> Renderer<D> for Cases<'_> {
     type Camera = Perspective;
     type Tracer = PathTracer<D, Sobol>;
     type Lights = (Point, ());

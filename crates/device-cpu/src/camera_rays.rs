@@ -2,7 +2,7 @@
 //! together.
 
 use residual_render::domain::{Lanes, MAX_LANES};
-use residual_render::scene::Scene;
+use residual_render::renderer::Renderer;
 use residual_render::tracer::Tracer;
 
 use crate::job::TileJob;
@@ -24,7 +24,7 @@ impl<'j> CameraRays<'j> {
 
     /// Makes rays until the stream is full or none are left.
     #[inline(always)]
-    pub(crate) fn fill<D: Lanes, Sc: Scene<D>>(
+    pub(crate) fn fill<D: Lanes, Sc: Renderer<D>>(
         &mut self,
         d: D,
         scene: &Sc,

@@ -6,7 +6,7 @@ use residual_render::domain::Lanes;
 use residual_render::layer::Layers;
 use residual_render::light::LightKinds;
 use residual_render::material::Material;
-use residual_render::scene::MaterialVisitor;
+use residual_render::renderer::MaterialVisitor;
 use residual_render::tracer::{self, Features, Tracer};
 
 use crate::samples::Samples;

@@ -10,7 +10,7 @@ use residual_bvh::{Hit, Ray};
 use residual_render::domain::{Lanes, MAX_LANES};
 use residual_render::math::vec3::vec3;
 use residual_render::sampler::SampleKey;
-use residual_render::surface::{self, Ray as LaneRay};
+use residual_render::surface::{PathRay, SurfaceHit};
 use residual_render::tracer::{Path, Shadow};
 
 use crate::samples::Samples;
@@ -27,7 +27,7 @@ const NOWHERE: Ray = Ray {
 
 /// The rays' two rows. The first distance is 0: rays start beyond the error of their origin.
 #[inline(always)]
-fn ray_rows<D: Lanes>(d: D, ray: &LaneRay<D>) -> [[Row; MAX_LANES]; 2] {
+fn ray_rows<D: Lanes>(d: D, ray: &PathRay<D>) -> [[Row; MAX_LANES]; 2] {
     let bits = |x: D::F| d.to_bits(x);
     let (o, v) = (&ray.org, &ray.dir);
     [
@@ -133,7 +133,7 @@ impl PathStream {
         let [r, g, b, pdf] = d.columns(|lane| self.states[members[lane]].weight);
         let [pixel, index, sample, depth] = d.columns(|lane| self.states[members[lane]].origin);
         let path = Path {
-            ray: LaneRay {
+            ray: PathRay {
                 org: vec3(real(ox), real(oy), real(oz)),
                 dir: vec3(real(dx), real(dy), real(dz)),
                 tmax: real(tmax),
@@ -297,12 +297,12 @@ impl SortedHits {
 
     /// The hits of `LANES` paths of these numbers.
     #[inline(always)]
-    pub(crate) fn load<D: Lanes>(&self, d: D, members: &[usize; MAX_LANES]) -> surface::Hit<D> {
+    pub(crate) fn load<D: Lanes>(&self, d: D, members: &[usize; MAX_LANES]) -> SurfaceHit<D> {
         let [_, u, v, prim] = d.columns(|lane| {
             let hit = &self.hits[members[lane]];
             [hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.prim]
         });
-        surface::Hit {
+        SurfaceHit {
             u: d.from_bits(u),
             v: d.from_bits(v),
             prim,

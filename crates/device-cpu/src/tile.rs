@@ -5,7 +5,7 @@ use std::time::Instant;
 use residual_bvh::{Hit, Ray};
 use residual_render::alpha::Candidate;
 use residual_render::domain::Lanes;
-use residual_render::scene::Scene;
+use residual_render::renderer::Renderer;
 use residual_render::tracer::{Settings, Tracer};
 use residual_render::triangle::program_in;
 
@@ -42,7 +42,7 @@ pub fn render_tile<D, Sc>(
 ) -> Counters
 where
     D: Lanes,
-    Sc: Scene<D>,
+    Sc: Renderer<D>,
 {
     let lights = scene.lights();
     let tracer = scene.tracer(Settings::new(d, &job.tracer));

@@ -10,7 +10,7 @@ use crate::texture::ScalarSource;
 pub trait AlphaTest<D: Domain> {
     /// Whether the surface is there for this hit of the ray, given by origin and direction. A pure function of both, so
     /// that every traversal of the same ray decides alike.
-    fn passes(&self, d: D, ray: [Vec3<D::F>; 2], hit: &surface::Hit<D>) -> D::M;
+    fn passes(&self, d: D, ray: [Vec3<D::F>; 2], hit: &surface::SurfaceHit<D>) -> D::M;
 }
 
 /// There where alpha is at least a cutoff.
@@ -35,7 +35,7 @@ pub struct AlphaBlend<A> {
 
 impl<D: Domain, A: ScalarSource<D>, C: ScalarSource<D>> AlphaTest<D> for AlphaMask<A, C> {
     #[inline(always)]
-    fn passes(&self, d: D, [_, dir]: [Vec3<D::F>; 2], hit: &surface::Hit<D>) -> D::M {
+    fn passes(&self, d: D, [_, dir]: [Vec3<D::F>; 2], hit: &surface::SurfaceHit<D>) -> D::M {
         let surface = Surface::new(d, self.attributes, hit, dir);
         let alpha = self.alpha.scalar(d, &surface);
         d.le(self.cutoff.scalar(d, &surface), alpha)
@@ -44,7 +44,7 @@ impl<D: Domain, A: ScalarSource<D>, C: ScalarSource<D>> AlphaTest<D> for AlphaMa
 
 impl<D: Domain, A: ScalarSource<D>> AlphaTest<D> for AlphaBlend<A> {
     #[inline(always)]
-    fn passes(&self, d: D, [org, dir]: [Vec3<D::F>; 2], hit: &surface::Hit<D>) -> D::M {
+    fn passes(&self, d: D, [org, dir]: [Vec3<D::F>; 2], hit: &surface::SurfaceHit<D>) -> D::M {
         let surface = Surface::new(d, self.attributes, hit, dir);
         let alpha = self.alpha.scalar(d, &surface);
         let [o, p, q] = [org.x, org.y, org.z].map(|c| d.to_bits(c));
@@ -79,5 +79,9 @@ pub fn alpha_test<'a, T: AlphaTest<Scalar<'a>>>(
     let [u, v] = candidate.uv;
     let prim = Uint(candidate.triangle);
     let ray = [candidate.org, candidate.dir].map(Vec3::from);
-    test.passes(Scalar::new(buffers), ray, &surface::Hit { u, v, prim })
+    test.passes(
+        Scalar::new(buffers),
+        ray,
+        &surface::SurfaceHit { u, v, prim },
+    )
 }

@@ -4,12 +4,12 @@ use crate::domain::Domain;
 use crate::math::Vec3;
 use crate::record::record;
 use crate::scene_data::SceneData;
-use crate::surface::Ray;
+use crate::surface::PathRay;
 
 /// A camera: turns points of the film into rays.
 pub trait Camera<D: Domain> {
     /// The ray through film coordinates in [−1, 1], x to the right, y up. Its direction is a unit vector.
-    fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D>;
+    fn ray(&self, d: D, film: [D::F; 2]) -> PathRay<D>;
 }
 
 record! {
@@ -51,19 +51,19 @@ pub struct Orthographic;
 
 impl<D: Domain> Camera<D> for Perspective {
     #[inline(always)]
-    fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
+    fn ray(&self, d: D, film: [D::F; 2]) -> PathRay<D> {
         let camera = CameraRecord::uniform(d);
         let dir = (camera.forward + camera.on_film(film)).normalize(d);
-        Ray::unbounded(d, camera.eye, dir)
+        PathRay::unbounded(d, camera.eye, dir)
     }
 }
 
 impl<D: Domain> Camera<D> for Orthographic {
     #[inline(always)]
-    fn ray(&self, d: D, film: [D::F; 2]) -> Ray<D> {
+    fn ray(&self, d: D, film: [D::F; 2]) -> PathRay<D> {
         let camera = CameraRecord::uniform(d);
         let org = camera.eye + camera.on_film(film);
-        Ray::unbounded(d, org, camera.forward.normalize(d))
+        PathRay::unbounded(d, org, camera.forward.normalize(d))
     }
 }
 

@@ -11,7 +11,7 @@ use residual_render::light::{
 use residual_render::math::vec3::vec3;
 use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{Attributes, Hit, Surface};
+use residual_render::surface::{Attributes, Surface, SurfaceHit};
 use residual_render::texture::{
     AnyFilter, AnyFormat, AnyWrap, Checkerboard, ColorSource, Const, Image, ImageParam,
     ScalarSource, TransformParam, UvMap,
@@ -111,7 +111,7 @@ macro_rules! light_formula {
         impl Formula for Light<$kind> {
             fn run<D: Lanes>(&self, d: D, x: &[D::U]) -> Vec<D::U> {
                 let [a, b, c, u, v] = [0, 1, 2, 3, 4].map(|k| d.from_bits(x[k]));
-                let hit = Hit { u: u * d.lit(0.5), v: v * d.lit(0.5), prim: d.uint(0) };
+                let hit = SurfaceHit { u: u * d.lit(0.5), v: v * d.lit(0.5), prim: d.uint(0) };
                 let surface = Surface::new(d, Attributes::default(), &hit, vec3(u, v, d.lit(-0.3)));
                 let sample = self.0.sample(d, d.uint(0), surface.point, [a, b, c]);
                 let mut results = light_words(d, sample);

@@ -5,7 +5,7 @@ use residual_render::light::{
     self, Area, AreaRecord, Directional, LightKind, Point, PunctualRecord, Spot, power_heuristic,
 };
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{Attributes, Ray};
+use residual_render::surface::{Attributes, PathRay};
 use residual_render::texture::Const;
 
 use crate::support::irradiance::estimate;
@@ -150,7 +150,7 @@ fn density_of_a_light_is_the_same_from_both_sides() {
             [f64::from(b1), f64::from(b2)],
             array(away).map(f64::from),
         );
-        let ray = Ray::unbounded(d, from, away.normalize(d));
+        let ray = PathRay::unbounded(d, from, away.normalize(d));
         let pdf = LAMP
             .density(d, Uint(0), &ray, &there)
             .expect("rays meet lamps");

@@ -4,7 +4,7 @@ use fearless_simd::{Level, dispatch};
 use residual_bvh::{AllHits, BuildQuality, Bvh, Ray, Watertight, any_hit, build, closest_hit};
 use residual_render::domain::{Scalar, Uint};
 use residual_render::math::vec3::vec3;
-use residual_render::surface::{Attributes, Hit, Surface};
+use residual_render::surface::{Attributes, Surface, SurfaceHit};
 
 use crate::support::random::Rng;
 use crate::support::scenes::{Triangle, scene};
@@ -63,7 +63,7 @@ fn self_hits(triangles: usize, scale: f32) -> (usize, usize) {
             } else {
                 (u, v)
             };
-            let hit = Hit {
+            let hit = SurfaceHit {
                 u,
                 v,
                 prim: Uint(0),
@@ -131,7 +131,7 @@ fn gaps_are_seen() {
             let mut rng = Rng::new(101);
             (0..2000).all(|_| {
                 let (u, v) = (rng.unit() * 0.5, rng.unit() * 0.5);
-                let hit = Hit { u, v, prim: Uint(0) };
+                let hit = SurfaceHit { u, v, prim: Uint(0) };
                 let surface = Surface::new(d, Attributes::default(), &hit, vec3(0.0, 0.0, -1.0));
                 let [x, y, z] = [0.1 * rng.unit(), 0.1 * rng.unit(), 1.0];
                 let org = surface.spawn(d, vec3(x, y, z));

@@ -3,8 +3,8 @@
 use residual_render::texture::srgb_table;
 
 use crate::desc::{
-    AlphaMode, ColorInput, Filter, LightKind, MaterialDesc, Phong, ScalarInput, SceneDesc,
-    SurfaceDesc, Texels, TextureUse,
+    AlphaMode, ColorInput, Filter, MaterialDesc, PhongSurface, PunctualKind, ScalarInput,
+    SceneDesc, SurfaceDesc, Texels, TextureUse,
 };
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
@@ -65,13 +65,13 @@ pub fn without(
         Effect::BackFaceCulling => options.culling = CullingRule::None,
         Effect::PointLights => scene
             .lights
-            .retain(|light| !matches!(light.kind, LightKind::Point { .. })),
+            .retain(|light| !matches!(light.kind, PunctualKind::Point { .. })),
         Effect::SpotLights => scene
             .lights
-            .retain(|light| !matches!(light.kind, LightKind::Spot { .. })),
+            .retain(|light| !matches!(light.kind, PunctualKind::Spot { .. })),
         Effect::DirectionalLights => scene
             .lights
-            .retain(|light| !matches!(light.kind, LightKind::Directional { .. })),
+            .retain(|light| !matches!(light.kind, PunctualKind::Directional { .. })),
         Effect::Environment => scene.environment = None,
         _ => {
             for material in &mut scene.materials {
@@ -139,7 +139,7 @@ fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
             (*even, *odd) = (plain(mean), plain(mean));
         }
         (Effect::Refraction, SurfaceDesc::Dielectric { transmittance, .. }) => {
-            *surface = SurfaceDesc::Phong(Phong {
+            *surface = SurfaceDesc::Phong(PhongSurface {
                 diffuse: plain(*transmittance),
                 specular: plain([0.0; 3]),
                 exponent: number(0.0),

@@ -205,7 +205,7 @@ pub enum SurfaceDesc {
     /// glTF 2.0, appendix B, with KHR_materials_specular, _ior, _transmission, _volume (thickness only).
     MetallicRoughness(MetallicRoughness),
     /// OBJ: Lambert plus normalised Phong.
-    Phong(Phong),
+    Phong(PhongSurface),
     /// OBJ `illum` 3, 5, 8: Lambert plus a perfect mirror. The two reflect no more than arrives.
     Mirror {
         /// `Kd`.
@@ -255,7 +255,7 @@ pub struct MetallicRoughness {
 
 /// OBJ's Lambert plus Phong surface.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Phong {
+pub struct PhongSurface {
     /// `Kd`.
     pub diffuse: ColorInput,
     /// `Ks`; 0 when `illum` < 2.
@@ -303,7 +303,7 @@ pub struct LightDesc {
     /// Name in the file.
     pub name: String,
     /// Its kind, with what belongs to it.
-    pub kind: LightKind,
+    pub kind: PunctualKind,
     /// Colour × intensity: W/(sr·m²)-like photometric units are taken as radiometric, one for one.
     /// Radiant intensity for point and spot, irradiance at normal incidence for directional.
     pub intensity: [f32; 3],
@@ -311,7 +311,7 @@ pub struct LightDesc {
 
 /// Kinds of punctual lights.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LightKind {
+pub enum PunctualKind {
     /// Shines everywhere from a point.
     Point {
         /// World position.

@@ -1,7 +1,7 @@
 //! The inputs of a material's description, listed once.
 
 use crate::desc::{
-    ColorInput, MaterialDesc, MetallicRoughness, NormalMap, Phong, ScalarInput, SurfaceDesc,
+    ColorInput, MaterialDesc, MetallicRoughness, NormalMap, PhongSurface, ScalarInput, SurfaceDesc,
     TextureUse,
 };
 
@@ -43,7 +43,7 @@ macro_rules! surface_inputs {
                 ("specular_color", Color(specular_color)),
                 ("transmission", Scalar(transmission)),
             ],
-            SurfaceDesc::Phong(Phong {
+            SurfaceDesc::Phong(PhongSurface {
                 diffuse,
                 specular,
                 exponent,

@@ -1,7 +1,7 @@
 //! The invariants of [`SceneDesc`], checked.
 
 use crate::desc::{
-    AlphaMode, CameraDesc, LightDesc, LightKind, MaterialDesc, MeshDesc, Projection, SceneDesc,
+    AlphaMode, CameraDesc, LightDesc, MaterialDesc, MeshDesc, Projection, PunctualKind, SceneDesc,
     SurfaceDesc, Texels,
 };
 use crate::desc_inputs::MaterialInput;
@@ -263,10 +263,10 @@ fn check_light(i: usize, light: &LightDesc) -> Check {
         .all(|value| value.is_finite() && *value >= 0.0);
     require(is_valid, place, "has a negative or non-finite intensity")?;
     match light.kind {
-        LightKind::Point { position } => {
+        PunctualKind::Point { position } => {
             require(position.is_finite(), place, "has a non-finite position")
         }
-        LightKind::Spot {
+        PunctualKind::Spot {
             position,
             direction,
             inner,
@@ -281,7 +281,7 @@ fn check_light(i: usize, light: &LightDesc) -> Check {
             let is_cone = inner >= 0.0 && inner < outer && outer <= std::f32::consts::FRAC_PI_2;
             require(is_cone, place, "has a cone without 0 ≤ inner < outer ≤ π/2")
         }
-        LightKind::Directional { direction } => require(
+        PunctualKind::Directional { direction } => require(
             is_unit(direction.length_squared()),
             place,
             "has no unit direction",

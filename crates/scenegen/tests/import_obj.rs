@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{Vec2, Vec3, Vec4};
 use residual_scenegen::desc::{
-    AlphaMode, MaterialDesc, Phong, SceneDesc, SurfaceDesc, Texels, Wrap,
+    AlphaMode, MaterialDesc, PhongSurface, SceneDesc, SurfaceDesc, Texels, Wrap,
 };
 use residual_scenegen::import::{ImportError, ImportOptions, import};
 use tempfile::TempDir;
@@ -57,7 +57,7 @@ fn material(statements: &str) -> (MaterialDesc, SceneDesc) {
     (scene.materials[0].clone(), scene)
 }
 
-fn phong(material: &MaterialDesc) -> &Phong {
+fn phong(material: &MaterialDesc) -> &PhongSurface {
     match &material.surface {
         SurfaceDesc::Phong(phong) => phong,
         other => panic!("{other:?}"),

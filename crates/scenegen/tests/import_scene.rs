@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_PI_4;
 
 use common::gltf_text::{F32, Gltf, U8, f32_bytes, warns};
 use glam::{Vec3, Vec3A};
-use residual_scenegen::desc::{LightKind, Projection};
+use residual_scenegen::desc::{Projection, PunctualKind};
 use serde_json::{Value, json};
 
 mod common;
@@ -28,12 +28,12 @@ fn lights_stand_in_the_world() {
     let scene = gltf.import().unwrap();
     assert_eq!(
         scene.lights[0].kind,
-        LightKind::Point {
+        PunctualKind::Point {
             position: Vec3::new(3., 2., 3.)
         }
     );
     assert_eq!(scene.lights[0].intensity, [10., 5., 0.]);
-    let LightKind::Spot {
+    let PunctualKind::Spot {
         position,
         direction,
         inner,
@@ -48,7 +48,7 @@ fn lights_stand_in_the_world() {
     assert!(warns(&scene, "lights/1", "innerConeAngle"));
     assert_eq!(
         scene.lights[2].kind,
-        LightKind::Directional { direction: Vec3::Z }
+        PunctualKind::Directional { direction: Vec3::Z }
     );
     assert_eq!(scene.lights[2].intensity, [0.0; 3]);
     assert!(warns(&scene, "lights/2", "negative"));

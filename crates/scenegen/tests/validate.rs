@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 use residual_scenegen::desc::{
-    EnvironmentDesc, ImageDesc, LightDesc, LightKind, SceneDesc, Texels, TextureDesc, TextureUse,
-    Wrap,
+    EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, Texels, TextureDesc,
+    TextureUse, Wrap,
 };
 use residual_scenegen::import::{ImportOptions, import};
 
@@ -82,7 +82,7 @@ fn violations_are_found_and_placed() {
             });
         }),
         ("lights[0]", |scene| {
-            let kind = LightKind::Directional {
+            let kind = PunctualKind::Directional {
                 direction: Vec3::ZERO,
             };
             scene.lights.push(LightDesc {

@@ -3,8 +3,8 @@
 use glam::{Vec2, Vec3, Vec4};
 use residual_device_cpu::LaneCount;
 use residual_scenegen::desc::{
-    AlphaMode, ColorInput, Filter, LightKind, MaterialDesc, MetallicRoughness, Phong, Projection,
-    ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
+    AlphaMode, ColorInput, Filter, MaterialDesc, MetallicRoughness, PhongSurface, Projection,
+    PunctualKind, ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
@@ -71,7 +71,7 @@ pub(crate) fn scene(case: &Case, far: Option<&Texels>) -> SceneDesc {
     );
     b.add((case.material)(texture), meshes);
     let position = Vec3::new(0.3, 0.5, 2.0);
-    b.light(LightKind::Point { position }, [3.0, 2.5, 2.0]);
+    b.light(PunctualKind::Point { position }, [3.0, 2.5, 2.0]);
     let lens = Projection::Perspective { yfov: 0.6 };
     b.camera("camera", [0.1, 0.2, 3.0], [0.0, 0.0, 0.0], lens);
     let mut scene = b.finish();
@@ -130,7 +130,7 @@ pub(crate) fn alpha(mode: AlphaMode, factor: f32, texture: TextureUse) -> Materi
 }
 
 pub(crate) fn painted(factor: [f32; 3], texture: TextureUse) -> MaterialDesc {
-    let surface = Phong {
+    let surface = PhongSurface {
         diffuse: colored(factor, texture),
         specular: color([0.0; 3]),
         exponent: scalar(0.0),

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 use residual_scenegen::desc::{
-    AlphaMode, ColorInput, EnvironmentDesc, Filter, ImageDesc, LightDesc, LightKind, MaterialDesc,
-    NormalMap, Phong, ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
+    AlphaMode, ColorInput, EnvironmentDesc, Filter, ImageDesc, LightDesc, MaterialDesc, NormalMap,
+    PhongSurface, PunctualKind, ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
 };
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{PlanOptions, plan};
@@ -34,7 +34,7 @@ fn effects(
     let mesh = sheet([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);
     b.add(make(texture), [mesh]);
     let position = Vec3::new(0.0, 0.0, 2.0);
-    b.light(LightKind::Point { position }, [1.0; 3]);
+    b.light(PunctualKind::Point { position }, [1.0; 3]);
     let mut scene = b.finish();
     let Texels::Rgba8(texels) = &mut scene.images[image].texels else {
         unreachable!("an image of bytes");
@@ -76,7 +76,7 @@ const PLACES: &[(Effect, Place)] = &[
         material("specular", SurfaceDesc::MetallicRoughness(surface))
     }),
     (Effect::PhongReflection, |factor, texture| {
-        let surface = Phong {
+        let surface = PhongSurface {
             diffuse: color([0.5; 3]),
             specular: colors(factor, texture),
             exponent: scalar(20.0),
@@ -95,7 +95,7 @@ const PLACES: &[(Effect, Place)] = &[
         ..material("emission", matte([0.5; 3]))
     }),
     (Effect::DiffuseReflection, |factor, texture| {
-        let surface = Phong {
+        let surface = PhongSurface {
             diffuse: colors(factor, texture),
             specular: color([0.5; 3]),
             exponent: scalar(20.0),
@@ -179,14 +179,14 @@ fn lights_that_do_not_shine_are_none() {
     let direction = Vec3::NEG_Z;
     let position = Vec3::new(0.5, 0.5, 2.0);
     let kinds = [
-        (Effect::PointLights, LightKind::Point { position }),
+        (Effect::PointLights, PunctualKind::Point { position }),
         (
             Effect::DirectionalLights,
-            LightKind::Directional { direction },
+            PunctualKind::Directional { direction },
         ),
         (
             Effect::SpotLights,
-            LightKind::Spot {
+            PunctualKind::Spot {
                 position,
                 direction,
                 inner: 0.2,
@@ -203,8 +203,8 @@ fn lights_that_do_not_shine_are_none() {
                     let light = scene.lights[0].clone();
                     // The plain light is of another kind than the one in question.
                     scene.lights[0].kind = match kind {
-                        LightKind::Point { .. } => LightKind::Directional { direction },
-                        _ => LightKind::Point { position },
+                        PunctualKind::Point { .. } => PunctualKind::Directional { direction },
+                        _ => PunctualKind::Point { position },
                     };
                     scene.lights.push(LightDesc {
                         kind,

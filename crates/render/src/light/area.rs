@@ -6,7 +6,7 @@ use super::{LightKind, LightSample};
 use crate::domain::{Buffer, Domain};
 use crate::math::{Vec3, warp};
 use crate::record::record;
-use crate::surface::{Attributes, Ray, Surface, offset_point};
+use crate::surface::{Attributes, PathRay, Surface, offset_point};
 use crate::texture::ColorSource;
 
 record! {
@@ -61,7 +61,7 @@ impl<D: Domain, E: ColorSource<D>> LightKind<D> for Area<E> {
     }
 
     #[inline(always)]
-    fn density(&self, d: D, _: D::U, ray: &Ray<D>, seen: &Surface<D>) -> Option<D::F> {
+    fn density(&self, d: D, _: D::U, ray: &PathRay<D>, seen: &Surface<D>) -> Option<D::F> {
         let distance = (seen.point - ray.org).length(d);
         Some(distance * distance / d.max(seen.cos_geometric * seen.area, d.lit(1e-37)))
     }

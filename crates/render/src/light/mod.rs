@@ -19,7 +19,7 @@ pub use punctual::{Directional, Point, PunctualRecord, Spot};
 
 use crate::domain::{Bundle, Domain};
 use crate::math::{Color, Vec3};
-use crate::surface::{Ray, Surface};
+use crate::surface::{PathRay, Surface};
 use crate::triangle::NO_LIGHT;
 
 /// Light arriving at a point from one sampled direction.
@@ -74,7 +74,7 @@ pub trait LightKind<D: Domain> {
 
     /// Density, per steradian, with which [`sample`](LightKind::sample) proposes to the origin of `ray` the direction
     /// of `ray`, which met the light with this record at `seen`. `None` for lights that no ray can meet.
-    fn density(&self, _: D, _record: D::U, _ray: &Ray<D>, _seen: &Surface<D>) -> Option<D::F> {
+    fn density(&self, _: D, _record: D::U, _ray: &PathRay<D>, _seen: &Surface<D>) -> Option<D::F> {
         None
     }
 }
@@ -121,7 +121,7 @@ pub trait LightKinds<D: Domain> {
         d: D,
         kind: KindIndex<D::U>,
         record: D::U,
-        ray: &Ray<D>,
+        ray: &PathRay<D>,
         seen: &Surface<D>,
     ) -> Option<D::F>;
 }
@@ -174,7 +174,7 @@ impl<D: Domain> LightKinds<D> for () {
         _: D,
         _: KindIndex<D::U>,
         _: D::U,
-        _: &Ray<D>,
+        _: &PathRay<D>,
         _: &Surface<D>,
     ) -> Option<D::F> {
         None
@@ -217,7 +217,7 @@ impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
         d: D,
         kind: KindIndex<D::U>,
         record: D::U,
-        ray: &Ray<D>,
+        ray: &PathRay<D>,
         seen: &Surface<D>,
     ) -> Option<D::F> {
         let first = self.0.density(d, record, ray, seen);
@@ -257,7 +257,7 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
         d: D,
         kind: KindIndex<D::U>,
         record: D::U,
-        ray: &Ray<D>,
+        ray: &PathRay<D>,
         seen: &Surface<D>,
     ) -> Option<D::F> {
         let (head, tail) = self.split_first()?;
@@ -303,7 +303,7 @@ pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
 pub fn density<D: Domain, L: LightKinds<D> + ?Sized>(
     d: D,
     lights: &L,
-    ray: &Ray<D>,
+    ray: &PathRay<D>,
     seen: &Surface<D>,
 ) -> D::F {
     let no_light = d.eq_u(seen.light, d.uint(NO_LIGHT));

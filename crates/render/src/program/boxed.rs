@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::domain::Domain;
 use crate::light::{Background, LightKind, LightSample};
 use crate::math::{Color, Vec3};
-use crate::surface::{Attributes, Hit, Ray, Surface};
+use crate::surface::{Attributes, PathRay, Surface, SurfaceHit};
 use crate::texture::{
     AnyFilter, AnyFormat, AnyWrap, ColorSource, Image, Input, ScalarSource, UvMap,
 };
@@ -110,11 +110,11 @@ entered!(ScalarSource {
 entered!(LightKind {
     fn sample(d, record: D::U, from: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D>;
     fn background(d, dir: Vec3<D::F>) -> Option<Background<D>>;
-    fn density(d, record: D::U, ray: &Ray<D>, seen: &Surface<D>) -> Option<D::F>;
+    fn density(d, record: D::U, ray: &PathRay<D>, seen: &Surface<D>) -> Option<D::F>;
 });
 entered!(Camera {
-    fn ray(d, film: [D::F; 2]) -> Ray<D>;
+    fn ray(d, film: [D::F; 2]) -> PathRay<D>;
 });
 entered!(AlphaTest {
-    fn passes(d, ray: [Vec3<D::F>; 2], hit: &Hit<D>) -> D::M;
+    fn passes(d, ray: [Vec3<D::F>; 2], hit: &SurfaceHit<D>) -> D::M;
 });

@@ -7,8 +7,8 @@ use crate::camera::Camera;
 use crate::domain::{Buffers, Domain, Scalar};
 use crate::layer::Layers;
 use crate::light::LightKind;
+use crate::renderer::{MaterialVisitor, Renderer};
 use crate::sampler::AnySampler;
-use crate::scene::{MaterialVisitor, Scene};
 use crate::tracer::{AnyTracer, Layered, Settings, TracerNode};
 use crate::triangle::program_in;
 
@@ -42,7 +42,7 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
     }
 }
 
-impl<'a, D: Domain + 'a> Scene<D> for Interpreted<'a, D> {
+impl<'a, D: Domain + 'a> Renderer<D> for Interpreted<'a, D> {
     type Camera = Box<dyn Camera<D> + Send + Sync + 'a>;
     type Tracer = Layered<AnyTracer<D, AnySampler>, Layers>;
     type Lights = [Box<dyn LightKind<D> + Send + Sync + 'a>];

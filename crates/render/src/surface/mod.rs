@@ -10,7 +10,7 @@ pub use attributes::{
     Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
 };
 pub use offset::offset_point;
-pub use ray::{Hit, Ray};
+pub use ray::{PathRay, SurfaceHit};
 
 use attributes::Corners;
 use place::Place;
@@ -57,7 +57,7 @@ pub struct Surface<D: Domain> {
 impl<D: Domain> Surface<D> {
     /// The surface at a hit of a ray with direction `dir`, with the attributes that its material reads.
     #[inline(always)]
-    pub fn new(d: D, attributes: Attributes, hit: &Hit<D>, dir: Vec3<D::F>) -> Self {
+    pub fn new(d: D, attributes: Attributes, hit: &SurfaceHit<D>, dir: Vec3<D::F>) -> Self {
         Self::at(d, attributes, &Place::new(d, hit), hit.prim, dir)
     }
 
@@ -156,7 +156,7 @@ impl<D: Domain> Surface<D> {
         [u, v]: [D::F; 2],
         from: Vec3<D::F>,
     ) -> Self {
-        let place = Place::new(d, &Hit { u, v, prim });
+        let place = Place::new(d, &SurfaceHit { u, v, prim });
         Self::at(d, attributes, &place, prim, place.point - from)
     }
 

@@ -1,6 +1,6 @@
 //! The place of a hit on its triangle.
 
-use super::ray::Hit;
+use super::ray::SurfaceHit;
 use crate::domain::Domain;
 use crate::math::Vec3;
 use crate::triangle::TriangleRecord;
@@ -21,7 +21,7 @@ impl<D: Domain> Place<D> {
     /// The bound on the error is γ₇ times the weighted magnitudes of the corners (Pharr, Jakob, Humphreys 2023,
     /// section 6.8.4).
     #[inline(always)]
-    pub(super) fn new(d: D, hit: &Hit<D>) -> Self {
+    pub(super) fn new(d: D, hit: &SurfaceHit<D>) -> Self {
         let triangle = TriangleRecord::load(d, hit.prim);
         let weights = [d.lit(1.0) - hit.u - hit.v, hit.u, hit.v];
         let [a, b, c] = [triangle.a, triangle.b, triangle.c];

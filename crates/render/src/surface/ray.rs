@@ -5,7 +5,7 @@ use crate::math::Vec3;
 
 /// A ray with as many lanes as its domain. The interval is [0, tmax] in units of `dir`.
 #[derive(Clone, Copy, Debug)]
-pub struct Ray<D: Domain> {
+pub struct PathRay<D: Domain> {
     /// Origin, world space.
     pub org: Vec3<D::F>,
     /// Direction; its length is the unit of t.
@@ -14,7 +14,7 @@ pub struct Ray<D: Domain> {
     pub tmax: D::F,
 }
 
-impl<D: Domain> Ray<D> {
+impl<D: Domain> PathRay<D> {
     /// A ray without an end.
     #[inline(always)]
     pub fn unbounded(d: D, org: Vec3<D::F>, dir: Vec3<D::F>) -> Self {
@@ -25,7 +25,7 @@ impl<D: Domain> Ray<D> {
 
 /// What traversal found.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit<D: Domain> {
+pub struct SurfaceHit<D: Domain> {
     /// Barycentric weight of corner 1.
     pub u: D::F,
     /// Barycentric weight of corner 2.

@@ -8,7 +8,7 @@ use crate::light::LightKinds;
 use crate::math::warp::cosine_hemisphere;
 use crate::math::{Color, Vec3};
 use crate::sampler::Sampler;
-use crate::surface::Ray;
+use crate::surface::PathRay;
 
 /// The pair of random numbers for the direction; the camera has pair 0.
 const DIRECTION: u32 = 1;
@@ -57,7 +57,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for AmbientOcclusion<D, S> {
         let local = cosine_hemisphere(d, self.sampler.pair(d, path.key, d.uint(DIRECTION)));
         let dir: Vec3<D::F> = surface.frame.to_world(local).normalize(d);
         Some(Shadow {
-            ray: Ray {
+            ray: PathRay {
                 org: surface.spawn(d, dir),
                 dir,
                 tmax: self.settings.reach,

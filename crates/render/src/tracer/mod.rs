@@ -34,13 +34,13 @@ use crate::layer::Layers;
 use crate::light::LightKinds;
 use crate::math::{Color, Vec3};
 use crate::sampler::SampleKey;
-use crate::surface::{Ray, Surface};
+use crate::surface::{PathRay, Surface};
 
 /// A path between two hits.
 #[derive(Clone, Copy)]
 pub struct Path<D: Domain> {
     /// The ray about to be traced, or just traced. Its direction is a unit vector.
-    pub ray: Ray<D>,
+    pub ray: PathRay<D>,
     /// What the ray's radiance counts for in the pixel.
     pub throughput: Color<D::F>,
     /// Density, per steradian, with which the BSDF proposed the ray's direction; 0 for camera rays and delta
@@ -56,7 +56,7 @@ pub struct Path<D: Domain> {
 #[derive(Clone, Copy)]
 pub struct Shadow<D: Domain> {
     /// The ray.
-    pub ray: Ray<D>,
+    pub ray: PathRay<D>,
     /// Contribution to the pixel.
     pub contribution: Color<D::F>,
     /// It is worth tracing.

@@ -7,7 +7,7 @@ use crate::domain::Domain;
 use crate::light::{self, LightKinds, power_heuristic};
 use crate::math::{Color, Vec3};
 use crate::sampler::Sampler;
-use crate::surface::Ray;
+use crate::surface::PathRay;
 
 /// Pairs of random numbers that a vertex uses.
 const PAIRS: u32 = 4;
@@ -99,7 +99,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<D, S> {
         let dir = sample.position - org;
         let pick = |a: D::F, b: D::F| d.select(sample.infinite, a, b);
         Some(Shadow {
-            ray: Ray {
+            ray: PathRay {
                 org,
                 dir: Vec3 {
                     x: pick(sample.wi.x, dir.x),
@@ -141,7 +141,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<D, S> {
         let scale = one / d.select(alive, survival, one);
         Some(Bounce {
             path: Path {
-                ray: Ray::unbounded(d, surface.spawn(d, dir), dir),
+                ray: PathRay::unbounded(d, surface.spawn(d, dir), dir),
                 throughput: throughput.scale(scale),
                 pdf: sample.pdf,
                 key: path.key,

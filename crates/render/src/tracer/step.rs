@@ -6,7 +6,7 @@ use crate::layer::Layers;
 use crate::light::LightKinds;
 use crate::material::Material;
 use crate::math::Color;
-use crate::surface::{Hit, Surface};
+use crate::surface::{Surface, SurfaceHit};
 
 /// What becomes of a hit. What is `None` never happens with this material, and takes no code.
 #[derive(Clone, Copy)]
@@ -27,7 +27,7 @@ pub fn shade<D, T, M, L>(
     d: D,
     tracer: &T,
     path: &Path<D>,
-    hit: &Hit<D>,
+    hit: &SurfaceHit<D>,
     material: &M,
     lights: &L,
 ) -> Step<D>

@@ -6,7 +6,7 @@ use residual_render::light::{self, EnvironmentHeader, LightRecord};
 use residual_render::math::vec3::vec3;
 use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{Attributes, Hit, Surface};
+use residual_render::surface::{Attributes, Surface, SurfaceHit};
 use residual_render::triangle::TriangleRecord;
 
 use super::alias::alias_table;
@@ -111,7 +111,7 @@ pub(crate) fn surface_at<D: Domain>(
     dir: [f64; 3],
 ) -> Surface<D> {
     let [x, y, z] = dir.map(|c| d.lit(c));
-    let hit = Hit {
+    let hit = SurfaceHit {
         u: d.lit(u),
         v: d.lit(v),
         prim: d.uint(prim),

@@ -4,8 +4,8 @@ use residual_render::domain::{Buffers, Domain};
 use residual_render::light;
 use residual_render::math::vec3::vec3;
 use residual_render::program::Interpreted;
-use residual_render::scene::Scene;
-use residual_render::surface::{Attributes, Hit, Surface};
+use residual_render::renderer::Renderer;
+use residual_render::surface::{Attributes, Surface, SurfaceHit};
 
 use crate::check::check;
 use crate::common::{Formula, Random, Yield, ifs};
@@ -24,7 +24,7 @@ impl Formula for Lights {
         (reals, words)
     }
     fn run<D: Domain>(&self, d: D, r: &[D::F], words: &[D::U]) -> Yield<D> {
-        let hit = Hit {
+        let hit = SurfaceHit {
             u: r[0],
             v: r[1],
             prim: words[0],

@@ -10,7 +10,7 @@ use residual_render::program::{
     AlphaTestNode, BoxedMaterial, BsdfNode, ColorNode, EmissionNode, ImageNode, NormalNode,
     Program, ScalarNode,
 };
-use residual_render::surface::{Attributes, Hit, Surface};
+use residual_render::surface::{Attributes, Surface, SurfaceHit};
 use residual_render::texture::Input;
 
 use crate::check::{check, record};
@@ -32,7 +32,7 @@ impl Formula for AtHit {
     }
     fn run<D: Domain>(&self, d: D, r: &[D::F], words: &[D::U]) -> Yield<D> {
         let material = BoxedMaterial::<D>::new(&self.0);
-        let hit = Hit {
+        let hit = SurfaceHit {
             u: r[0],
             v: r[1],
             prim: words[0],
@@ -159,7 +159,7 @@ impl Formula for Texture {
     }
     fn run<D: Domain>(&self, d: D, r: &[D::F], words: &[D::U]) -> Yield<D> {
         use residual_render::texture::{ColorSource, ScalarSource};
-        let hit = Hit {
+        let hit = SurfaceHit {
             u: r[0],
             v: r[1],
             prim: words[0],
@@ -196,7 +196,7 @@ impl Formula for Alpha {
         (reals, words)
     }
     fn run<D: Domain>(&self, d: D, r: &[D::F], words: &[D::U]) -> Yield<D> {
-        let hit = Hit {
+        let hit = SurfaceHit {
             u: r[0],
             v: r[1],
             prim: words[0],

@@ -5,9 +5,9 @@ use residual_render::domain::{Buffers, Domain};
 use residual_render::layer::{Layer, Layers};
 use residual_render::math::vec3::vec3;
 use residual_render::program::{BoxedMaterial, CameraNode, EmissionNode, Interpreted, Structure};
+use residual_render::renderer::Renderer;
 use residual_render::sampler::{AnySampler, SampleKey, Sampler};
-use residual_render::scene::Scene;
-use residual_render::surface::{Hit, Ray};
+use residual_render::surface::{PathRay, SurfaceHit};
 use residual_render::texture::Input;
 use residual_render::tracer::{
     self, DebugView, Path, PathTracer, Settings, Tracer, TracerNode, TracerOptions,
@@ -119,13 +119,13 @@ impl Formula for AnyStep {
         let scene = Interpreted::<D>::new(&structure, &Buffers::EMPTY);
         let material = BoxedMaterial::<D>::new(&program);
         let dir = vec3(r[2], r[3], r[4]);
-        let hit = Hit {
+        let hit = SurfaceHit {
             u: r[0],
             v: r[1],
             prim,
         };
         let path = Path {
-            ray: Ray::unbounded(d, -dir, dir),
+            ray: PathRay::unbounded(d, -dir, dir),
             throughput: vec3(r[5], r[6], r[7]),
             pdf: r[8],
             key: SampleKey { pixel, index },

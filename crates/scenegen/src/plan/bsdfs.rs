@@ -4,7 +4,7 @@ use residual_render::bsdf::AnyInterface;
 use residual_render::program::{BsdfNode, ColorNode, ScalarNode};
 
 use super::program::{Builder, is_black};
-use crate::desc::{ColorInput, MetallicRoughness, Phong, SurfaceDesc, Warning, WarningKind};
+use crate::desc::{ColorInput, MetallicRoughness, PhongSurface, SurfaceDesc, Warning, WarningKind};
 use crate::effect::Effect;
 
 impl Builder<'_> {
@@ -137,7 +137,7 @@ impl Builder<'_> {
         }
     }
 
-    fn phong(&mut self, surface: &Phong) -> BsdfNode {
+    fn phong(&mut self, surface: &PhongSurface) -> BsdfNode {
         let albedo = self.sources.tinted_color(&surface.diffuse);
         let specular = self.sources.color(&surface.specular);
         let diffuse = self.diffuse(albedo);

@@ -15,7 +15,7 @@ use super::images::Images;
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
 use crate::desc::{
-    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, LightKind, SceneDesc, Texels,
+    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, Texels,
 };
 
 /// The kinds of lights of a scene and how many there are of each.
@@ -156,10 +156,10 @@ impl PlannedLights {
         let record =
             |position: glam::Vec3| PunctualRecord::new(0, position.to_array(), light.intensity);
         let (node, power, record) = match light.kind {
-            LightKind::Point { position } => {
+            PunctualKind::Point { position } => {
                 (LightNode::Point, sphere * strength, record(position))
             }
-            LightKind::Spot {
+            PunctualKind::Spot {
                 position,
                 direction,
                 inner,
@@ -176,7 +176,7 @@ impl PlannedLights {
                 let cone = 0.5 * sphere * (1.0 - f64::from(outer.cos()));
                 (LightNode::Spot, cone * strength, record)
             }
-            LightKind::Directional { direction } => {
+            PunctualKind::Directional { direction } => {
                 let power = std::f64::consts::PI * radius * radius * strength;
                 (LightNode::Directional, power, record(-direction))
             }

@@ -62,7 +62,7 @@ fn implementation(out: &mut Module, plan: &Plan, literals: &Literals<'_>) -> fmt
     let camera = structure.camera.literal();
     writeln!(
         out,
-        "\nimpl<D: Domain> render::scene::Scene<D> for Scene<'_> {{"
+        "\nimpl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {{"
     )?;
     let start = "    type Camera = ";
     let kind = out.lines(&literals.kind(&camera), 4, start.len(), 1);
@@ -125,7 +125,7 @@ fn alpha_tests(out: &mut Module, programs: &[Program], literals: &Literals<'_>) 
 
 /// The methods about programs.
 fn programs(out: &mut Module, structure: &Structure) -> fmt::Result {
-    out.import("scene", &["MaterialVisitor"]);
+    out.import("renderer", &["MaterialVisitor"]);
     let count = structure.programs.len();
     writeln!(
         out,

@@ -9,9 +9,9 @@ use residual_render::layer::{Layer, Layers};
 use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
 use residual_render::program::{AlphaTestNode, BoxedMaterial, Interpreted, Program, Structure};
+use residual_render::renderer::Renderer;
 use residual_render::sampler::SampleKey;
-use residual_render::scene::Scene;
-use residual_render::surface::{Hit, Ray};
+use residual_render::surface::{PathRay, SurfaceHit};
 use residual_render::tracer::{self, Features, Path, Settings, Step, Tracer};
 
 /// A recorded function with what is printed around it.
@@ -23,9 +23,9 @@ pub(super) struct Recorded {
 }
 
 /// A hit, as parameters.
-fn hit(tape: &Tape) -> Hit<Record<'_>> {
+fn hit(tape: &Tape) -> SurfaceHit<Record<'_>> {
     let prim = tape.word("prim");
-    Hit {
+    SurfaceHit {
         prim,
         u: tape.real("u"),
         v: tape.real("v"),
@@ -36,7 +36,7 @@ fn hit(tape: &Tape) -> Hit<Record<'_>> {
 fn path(tape: &Tape) -> Path<Record<'_>> {
     let d = Record::new(tape);
     Path {
-        ray: Ray::unbounded(d, tape.vector("org"), tape.vector("dir")),
+        ray: PathRay::unbounded(d, tape.vector("org"), tape.vector("dir")),
         throughput: tape.vector("throughput"),
         pdf: tape.real("pdf"),
         key: SampleKey {

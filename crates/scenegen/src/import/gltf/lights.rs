@@ -10,7 +10,7 @@ use gltf::json::validation::Checked;
 use super::document::Document;
 use super::lookup::{get, place};
 use super::nodes::PlacedNode;
-use crate::desc::{LightDesc, LightKind};
+use crate::desc::{LightDesc, PunctualKind};
 use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
 
@@ -47,10 +47,10 @@ pub(super) fn read(
         .map(|axis| axis.as_vec3().normalize());
     let kind = match (&light.type_, direction) {
         (Checked::Invalid, _) => return Err(Fault::new(at, "has an unknown type")),
-        (Checked::Valid(Type::Point), _) => LightKind::Point { position },
+        (Checked::Valid(Type::Point), _) => PunctualKind::Point { position },
         (Checked::Valid(Type::Spot), Some(direction)) => {
             let (inner, outer) = cone(light, &at, warnings);
-            LightKind::Spot {
+            PunctualKind::Spot {
                 position,
                 direction,
                 inner,
@@ -58,7 +58,7 @@ pub(super) fn read(
             }
         }
         (Checked::Valid(Type::Directional), Some(direction)) => {
-            LightKind::Directional { direction }
+            PunctualKind::Directional { direction }
         }
         (Checked::Valid(Type::Spot | Type::Directional), None) => {
             warnings.push(

@@ -3,7 +3,8 @@
 use super::statements::Statements;
 use super::textures::Textures;
 use crate::desc::{
-    AlphaMode, ColorInput, MaterialDesc, NormalMap, Phong, ScalarInput, SurfaceDesc, TextureUse,
+    AlphaMode, ColorInput, MaterialDesc, NormalMap, PhongSurface, ScalarInput, SurfaceDesc,
+    TextureUse,
 };
 use crate::import::images::ImageRole;
 
@@ -103,7 +104,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn phong(&mut self, diffuse: ColorInput, illumination: Illumination) -> Phong {
+    fn phong(&mut self, diffuse: ColorInput, illumination: Illumination) -> PhongSurface {
         let specular = self.color("ks", "map_ks", 0.0);
         let black = ColorInput {
             factor: [0.0; 3],
@@ -111,7 +112,7 @@ impl Reader<'_, '_> {
         };
         let texture = self.scalar_map("map_ns");
         let factor = self.statements.number("ns").unwrap_or(1.0).max(0.0);
-        Phong {
+        PhongSurface {
             diffuse,
             specular: match illumination {
                 Illumination::Diffuse => black,

@@ -16,7 +16,7 @@ pub trait MaterialVisitor<D: Domain> {
 }
 
 /// The structure of a scene, as code. Emitted scenes are made of concrete types; `program::Interpreted` of boxes.
-pub trait Scene<D: Domain>: Sync {
+pub trait Renderer<D: Domain>: Sync {
     /// The camera's kind.
     type Camera: Camera<D>;
     /// The tracer, which has the sampler.
