@@ -1,6 +1,6 @@
 //! The scene description: what an importer read, validated, as plain data.
 //!
-//! First value of the chain file → [`SceneDesc`] → effects → plan → program. Nothing here knows a file
+//! First value of the chain file → [`SceneDesc`] → plan → program, from which effects are read off. Nothing here knows a file
 //! format or a device. Invariants, established by the importers and checked by [`SceneDesc::validate`]:
 //! every index is in range, every float finite, every triangle has three valid corners, attribute arrays
 //! are as long as `positions`, images have `width · height` texels.

@@ -1,4 +1,4 @@
-//! From a scene file to a renderer: import, effects, plan, emission.
+//! From a scene file to a renderer: import, plan, effects, emission.
 
 pub mod ablation;
 pub mod build_script;
