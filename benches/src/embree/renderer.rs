@@ -51,7 +51,7 @@ impl<'s> EmbreeTraversal<'s> {
     }
 
     /// Traces rays in packets of `N`; `trace` gets a packet and the lanes that take part, `take` the packet, a lane and
-    /// the number of its ray.
+    /// the index of its ray.
     fn packets_of<const N: usize>(
         &self,
         rays: &[Ray],

@@ -8,7 +8,7 @@ use crate::domain::{Domain, Unsigned};
 pub struct SampleKey<U> {
     /// A hash of pixel and seed.
     pub pixel: U,
-    /// Number of the sample in its pixel.
+    /// Index of the sample in its pixel.
     pub index: U,
 }
 

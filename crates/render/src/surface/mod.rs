@@ -18,7 +18,7 @@ use place::Place;
 use crate::domain::Domain;
 use crate::math::{Frame, Vec3};
 
-/// The numbers of inputs that boxed programs keep per surface point.
+/// The most inputs that boxed programs keep per surface point.
 pub const MAX_INPUTS: usize = 16;
 
 /// A point of a surface and the way it was reached.

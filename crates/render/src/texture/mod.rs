@@ -132,7 +132,7 @@ impl<D: Domain> ScalarSource<D> for Bound<D::F> {
     }
 }
 
-/// An input of a boxed program, by number: already evaluated into [`Surface::inputs`].
+/// An input of a boxed program, by index: already evaluated into [`Surface::inputs`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Input(pub usize);
 

@@ -87,17 +87,17 @@ impl Recorded {
         let Some(branch) = self.choosing else {
             return self.apply(Op::Select, [mask, a, b]);
         };
-        let Node::Branch(number) = self.node(branch) else {
+        let Node::Branch(index) = self.node(branch) else {
             unreachable!("choices are of branches")
         };
-        let number = number as usize;
+        let index = index as usize;
         // What `choose` itself computes is not part of either side.
-        let of_sides = self.branches[number].mask == mask && a < branch && b < branch;
+        let of_sides = self.branches[index].mask == mask && a < branch && b < branch;
         if !of_sides || a == b || self.is_mask_again(a, b) {
             return self.apply(Op::Select, [mask, a, b]);
         }
-        let sides = &mut self.branches[number].sides;
-        let place = sides
+        let sides = &mut self.branches[index].sides;
+        let side = sides
             .iter()
             .position(|known| *known == [a, b])
             .unwrap_or_else(|| {
@@ -108,7 +108,7 @@ impl Recorded {
         self.intern(
             Node::Choice {
                 branch,
-                place: place as u32,
+                place: side as u32,
             },
             kind,
         )

@@ -14,8 +14,8 @@ const ONE: u32 = 0x3f80_0000;
 impl Recorded {
     /// Records an operation. Operands beyond its arity are ignored.
     pub(super) fn apply(&mut self, op: Op, mut operands: [Id; 3]) -> Id {
-        for place in op.arity()..3 {
-            operands[place] = operands[0];
+        for unused in op.arity()..3 {
+            operands[unused] = operands[0];
         }
         if op.commutes() {
             // Constants last, so that identities look for them in one place.
