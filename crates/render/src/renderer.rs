@@ -32,7 +32,7 @@ pub trait Renderer<D: Domain>: Sync {
     fn lights(&self) -> &Self::Lights;
     /// How many material programs there are.
     fn programs(&self) -> usize;
-    /// Whether any surface has an alpha test: whether [`alpha_test`](Scene::alpha_test) is ever false.
+    /// Whether any surface has an alpha test: whether [`alpha_test`](Renderer::alpha_test) is ever false.
     fn has_alpha_tests(&self) -> bool {
         false
     }
