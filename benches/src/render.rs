@@ -1,8 +1,9 @@
 //! Whole renders: contenders in turn, round by round, and what the times say.
 
+use residual_render::passes::{Counters, RenderOptions};
 use std::ops::ControlFlow;
 
-use residual_device_cpu::{Counters, CpuDevice, RenderOptions, SceneView, TileRenderer};
+use residual_device_cpu::{CpuDevice, SceneView, TileRenderer};
 use residual_metrics::Estimate;
 use serde_json::{Value, json};
 

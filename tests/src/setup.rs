@@ -1,11 +1,12 @@
 //! From a description to a film.
 
+use residual_render::passes::RenderOptions;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{
-    AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, TileRenderer, Traversal,
+    AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileRenderer, Traversal,
 };
 use residual_render::film::Film;
 use residual_scenegen::desc::SceneDesc;
@@ -133,7 +134,7 @@ impl<'a> Prepared<'a> {
             seed: look.seed,
             reach: look.reach,
         };
-        let go_on = |_: residual_device_cpu::Progress<'_>| ControlFlow::Continue(());
+        let go_on = |_: residual_render::passes::Progress<'_>| ControlFlow::Continue(());
         device.render(|| renderer, &self.view(), &options, go_on).0
     }
 }

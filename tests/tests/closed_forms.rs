@@ -1,9 +1,10 @@
 //! Whole renders whose radiance is known (hard case L-12): the interpreter on the CPU device, hand-made scenes.
 
+use residual_render::passes::RenderOptions;
 use std::ops::ControlFlow;
 
 use residual_bvh::BuildQuality;
-use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView};
+use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
 use residual_render::alias_table::AliasEntry;
 use residual_render::camera::CameraRecord;
 use residual_render::film::Film;

@@ -10,7 +10,7 @@ use residual_render::domain::Buffer;
 use residual_render::light::set_picks;
 use residual_scenegen::desc::{LightDesc, PunctualKind, SceneDesc, SurfaceDesc, Texels};
 use residual_scenegen::effects::{Effect, Effects};
-use residual_scenegen::emit::{rust, wgsl_module};
+use residual_scenegen::emit::rust;
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 use residual_tests::pictures::{first_difference, mean, read_exr};
 use residual_tests::{Look, Prepared, fixtures, read_scene};
@@ -300,6 +300,9 @@ fn numbers_read_back_as_the_same_bits() {
             plan.check_structure(residual_scenegen::fingerprint(&other.structure))
                 .is_err()
         );
-        assert_ne!(wgsl_module(&plan.structure), wgsl_module(&other.structure));
+        assert_ne!(
+            residual_wgsl::scene_module(&plan.structure),
+            residual_wgsl::scene_module(&other.structure)
+        );
     }
 }

@@ -5,7 +5,7 @@ use std::fs;
 use anyhow::{Context, Result};
 use residual_device_cpu::LaneCount;
 use residual_driver::compile::lanes_name;
-use residual_scenegen::emit::{rust, wgsl_module};
+use residual_scenegen::emit::rust;
 
 use crate::args::{EmitArgs, TargetArg};
 use crate::scene;
@@ -15,7 +15,7 @@ pub(crate) fn run(args: &EmitArgs) -> Result<()> {
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let (text, extension) = match args.target {
         TargetArg::Rust => (rust::module(&plan, &lanes_name(lanes)), "rs"),
-        TargetArg::Wgsl => (wgsl_module(&plan.structure), "wgsl"),
+        TargetArg::Wgsl => (residual_wgsl::scene_module(&plan.structure), "wgsl"),
     };
     match &args.output {
         None => print!("{text}"),

@@ -1,5 +1,6 @@
 //! `cargo xtask render`.
 
+use std::convert::Infallible;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
@@ -53,10 +54,12 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         };
         let rendered = session.render(
             &plan.name,
-            &device,
-            || tiers.choose(&ledger),
-            &view,
             &options,
+            plan.structure.layers,
+            |film, pass| {
+                let renderer = tiers.choose(&ledger);
+                Ok::<_, Infallible>(device.pass(renderer, &view, &options, film, pass))
+            },
             |progress| ledger.add(progress),
         );
         tiers.end();
@@ -76,7 +79,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             compile: tiers.compile_time(),
         },
         total: session.start.elapsed(),
-        tiers: tiers.report(&ledger, rendered.report.threads),
+        tiers: tiers.report(&ledger, device.threads()),
+        device: "cpu",
+        threads: device.threads(),
         lanes: lanes.count(),
         bvh_bytes,
         rendered: &rendered,

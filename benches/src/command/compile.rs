@@ -13,7 +13,6 @@ use residual_driver::cache::Cache;
 use residual_driver::compile::{Compiler, Origin, library_source};
 use residual_driver::workspace;
 use residual_metrics::Estimate;
-use residual_scenegen::emit::wgsl_module;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 
@@ -66,7 +65,9 @@ fn measure(path: &Path, binding: Binding, rounds: u32) -> Result<[CompileRow; 2]
     for _ in 0..rounds {
         let plan = timed(&mut times.plan, || load(path, binding))?;
         let compiled = compile(&plan, &mut times)?;
-        let wgsl = timed(&mut times.wgsl, || wgsl_module(&plan.structure));
+        let wgsl = timed(&mut times.wgsl, || {
+            residual_wgsl::scene_module(&plan.structure)
+        });
         timed(&mut times.validate, || validate_wgsl(&wgsl))
             .with_context(|| format!("the WGSL of {:?}", plan.name))?;
         last = Some((plan, compiled, wgsl));

@@ -1,5 +1,6 @@
 //! `cargo xtask bench render`: whole renders, specialised and interpreted, with our traversal and with Embree's.
 
+use residual_render::passes::RenderOptions;
 use std::path::Path;
 
 use crate::embree::{Embree, EmbreeScene, EmbreeTraversal, Quality};
@@ -8,9 +9,7 @@ use crate::mesh::Mesh;
 use crate::render::{RenderContender, RenderRow, render_table, renders};
 use anyhow::{Context, Result};
 use residual_device_cpu::plugin::LoadedRenderer;
-use residual_device_cpu::{
-    AnyBvh, CpuDevice, Interpreter, LaneCount, RenderOptions, SceneView, Traversal,
-};
+use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, Traversal};
 use residual_driver::compile;
 use residual_frontend::hierarchy_quality;
 use residual_scenegen::import::{ImportOptions, import};

@@ -1,9 +1,10 @@
 //! Which interface's specialisation is worth what (thesis, Figure 3.5): a textured dielectric coat whose textures, and whose
 //! vertex attributes, are known to the compiler or not.
 
+use residual_render::passes::Counters;
 use std::hint::black_box;
 
-use residual_device_cpu::{Counters, LaneCount, SceneView, TileJob, TileRenderer, render_lanes};
+use residual_device_cpu::{LaneCount, SceneView, TileJob, TileRenderer, render_lanes};
 use residual_render::bsdf::{Bsdf, CoatedDiffuse};
 use residual_render::camera::Perspective;
 use residual_render::domain::Domain;

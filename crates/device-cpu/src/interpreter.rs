@@ -1,9 +1,10 @@
 //! The interpreted tier: a structure's boxed nodes, built for whatever instruction set and lane count is at hand.
 
 use residual_render::layer::Layers;
+use residual_render::passes::Counters;
 use residual_render::program::{Interpreted, Structure};
 
-use crate::job::{Counters, SceneView, TileJob, TileRenderer};
+use crate::job::{SceneView, TileJob, TileRenderer};
 use crate::lanes::LaneCount;
 use crate::render_lanes;
 

@@ -18,9 +18,9 @@ mod stream;
 pub mod tile;
 pub mod traversal;
 
-pub use device::{CpuDevice, Progress, RenderOptions, RenderReport};
+pub use device::CpuDevice;
 pub use interpreter::Interpreter;
-pub use job::{Counters, SceneView, TileJob, TileRenderer};
+pub use job::{SceneView, TileJob, TileRenderer};
 pub use lanes::LaneCount;
 pub use traversal::{AnyBvh, Traversal};
 

@@ -3,6 +3,7 @@
 //! The boundary is C: one function that renders a tile, with pointers and lengths, and one that says what the library
 //! was made for. No Rust type with an unspecified layout crosses it.
 
+use residual_render::passes::Counters;
 use std::ffi::{OsStr, c_void};
 use std::{fmt, ptr, slice};
 
@@ -10,7 +11,7 @@ use residual_bvh::{Hit, Ray};
 use residual_render::domain::{Buffer, Buffers};
 use residual_render::layer::Layers;
 
-use crate::job::{Counters, SceneView, TileJob, TileRenderer};
+use crate::job::{SceneView, TileJob, TileRenderer};
 use crate::lanes::LaneCount;
 use crate::traversal::{AlphaFilter, Traversal};
 
@@ -364,7 +365,7 @@ macro_rules! compiled_scene {
                 view: &$crate::SceneView<'_>,
                 job: &$crate::TileJob,
                 samples: &mut [f32],
-            ) -> $crate::Counters {
+            ) -> $crate::generated::render::passes::Counters {
                 $crate::render_lanes!($lanes, view, job, samples, |buffers| $scene::new(buffers))
             }
         }

@@ -1,5 +1,6 @@
 //! One tile: from camera rays to radiance. The whole life of its paths is in [`render_tile`].
 
+use residual_render::passes::Counters;
 use std::time::Instant;
 
 use residual_bvh::{Hit, Ray};
@@ -10,7 +11,7 @@ use residual_render::tracer::{Settings, Tracer};
 use residual_render::triangle::program_in;
 
 use crate::camera_rays::CameraRays;
-use crate::job::{Counters, SceneView, TileJob};
+use crate::job::{SceneView, TileJob};
 use crate::samples::Samples;
 use crate::shade::Shading;
 use crate::stream::{PathStream, ShadowStream, SortedHits};

@@ -1,8 +1,8 @@
 //! What a render yields.
 
+use residual_render::passes::RenderReport;
 use std::time::Duration;
 
-use residual_device_cpu::RenderReport;
 use residual_render::film::Film;
 
 /// The image, and what it took.

@@ -1,5 +1,6 @@
 //! A render as people see it: progress, images on the way, Ctrl-C, the image at the end.
 
+use residual_render::passes::{Counters, Pass, Progress, RenderOptions, render_passes};
 use std::ffi::OsStr;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -9,8 +10,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
-use residual_device_cpu::{CpuDevice, Progress, RenderOptions, SceneView, TileRenderer};
-use residual_render::film::Film;
+use residual_render::film::{Film, TILE_SIZE};
 use residual_render::layer::Layers;
 
 use crate::options::{RenderArgs, StatsFormat};
@@ -55,18 +55,17 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Renders, showing progress, and writes the images: after the first pass, from time to time, and at the end.
-    /// `after_pass` is called after each.
+    /// Renders a film with these layers, showing progress, and writes the images: after the first pass, from time to
+    /// time, and at the end. `pass` adds a pass of samples; `after_pass` is called after each.
     ///
     /// # Errors
-    /// If an image cannot be written.
-    pub fn render<'r>(
+    /// If a pass fails or an image cannot be written. When a pass fails, the images are what there was before.
+    pub fn render<E: Into<anyhow::Error>>(
         &self,
         scene: &str,
-        device: &CpuDevice,
-        choose: impl FnMut() -> &'r dyn TileRenderer,
-        view: &SceneView<'_>,
         options: &RenderOptions,
+        layers: Layers,
+        pass: impl FnMut(&mut Film, Pass) -> Result<Counters, E>,
         mut after_pass: impl FnMut(&Progress<'_>),
     ) -> Result<Rendered> {
         let bar = progress_bar(self.args, options);
@@ -97,13 +96,18 @@ impl<'a> Session<'a> {
             }
         };
         let before = process_time();
-        let (film, report) = device.render(choose, view, options, show);
+        let [width, height] = options.size;
+        let mut film = Film::new(width, height, TILE_SIZE, layers);
+        let (report, outcome) = render_passes(options, &mut film, pass, show);
         let cpu = process_time() - before;
         bar.finish_and_clear();
         if let Some(error) = failed {
             return Err(error);
         }
-        self.write(scene, &film, report.elapsed)?;
+        if film.samples() > 0 || outcome.is_ok() {
+            self.write(scene, &film, report.elapsed)?;
+        }
+        outcome.map_err(Into::into)?;
         let first_image = first_image.unwrap_or_else(|| self.start.elapsed());
         Ok(Rendered {
             film,

@@ -56,6 +56,10 @@ pub struct Statistics<'a> {
     pub total: Duration,
     /// Which renderers were at work.
     pub tiers: TierReport,
+    /// What rendered: `cpu` or `wgpu`.
+    pub device: &'static str,
+    /// Threads of the processor.
+    pub threads: usize,
     /// Paths shaded at once.
     pub lanes: u32,
     /// Bytes of the hierarchy.
@@ -99,10 +103,10 @@ impl Statistics<'_> {
         let error = film.error();
         json!({
             "scene": self.scene.name,
-            "device": "cpu",
+            "device": self.device,
             "tier": self.tiers.tier,
             "lanes": self.lanes,
-            "threads": self.rendered.report.threads,
+            "threads": self.threads,
             "width": film.width(),
             "height": film.height(),
             "spp": film.samples(),
@@ -164,7 +168,7 @@ impl Statistics<'_> {
             preparation.compile.as_secs_f64(),
             self.samples() / render / 1e6,
             rays / render / 1e6,
-            self.rendered.report.threads,
+            self.threads,
             self.lanes,
             self.tiers.tier,
             mib(self.scene.bytes),

@@ -6,6 +6,9 @@
 
 use crate::layer::{Layer, Layers, Reduction};
 
+/// Pixels along the side of a tile. The paths under way in one, with all they carry, fit a second-level cache.
+pub const TILE_SIZE: u32 = 64;
+
 /// What is kept of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Pixel {

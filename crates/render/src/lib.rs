@@ -11,6 +11,7 @@ pub mod layer;
 pub mod light;
 pub mod material;
 pub mod math;
+pub mod passes;
 pub mod program;
 pub mod record;
 pub mod renderer;

@@ -1,5 +1,6 @@
 //! The program of a single scene, which carries its renderer and its data: what `cargo xtask build` makes.
 
+use std::convert::Infallible;
 use std::ffi::OsStr;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -93,12 +94,12 @@ fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
         buffers: data.buffers(),
         traversal: &bvh,
     };
+    let options = args.render.render_options(size, scene.reach);
     let rendered = session.render(
         scene.name,
-        &device,
-        || scene.renderer,
-        &view,
-        &args.render.render_options(size, scene.reach),
+        &options,
+        scene.renderer.layers(),
+        |film, pass| Ok::<_, Infallible>(device.pass(scene.renderer, &view, &options, film, pass)),
         |_| (),
     )?;
     let summary = SceneSummary {
@@ -111,6 +112,8 @@ fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
     session.finish(&Statistics {
         scene: &summary,
         rendered: &rendered,
+        device: "cpu",
+        threads: device.threads(),
         preparation,
         total: session.start.elapsed(),
         tiers: TierReport {

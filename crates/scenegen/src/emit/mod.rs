@@ -4,6 +4,3 @@
 //! same bits, and the source's names stand in comments.
 
 pub mod rust;
-pub mod wgsl;
-
-pub use wgsl::wgsl_module;

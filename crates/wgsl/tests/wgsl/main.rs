@@ -3,16 +3,15 @@
 mod naga_checks;
 mod structures;
 
+use residual_render::domain::Domain;
 use residual_render::domain::tape::{Outputs, Record, Tape};
-use residual_render::domain::{Buffer, Domain};
 use residual_render::layer::{Layer, Layers};
 use residual_render::program::{BsdfNode, CameraNode, ColorNode, LightNode, ScalarNode, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 use residual_render::tracer::{DebugView, TracerNode};
-use residual_scenegen::emit::wgsl::wgsl_function;
-use residual_scenegen::emit::wgsl_module;
+use residual_wgsl::{Binding, function_module, scene_module};
 
 use crate::naga_checks::{accept, no_dead_code};
 use crate::structures::{bsdfs, color, everything, images, lights, program, scalar, structure};
@@ -20,7 +19,7 @@ use crate::structures::{bsdfs, color, everything, images, lights, program, scala
 #[test]
 fn every_bsdf() {
     for bsdf in bsdfs() {
-        no_dead_code(&wgsl_module(&structure(vec![program(bsdf)], vec![])));
+        no_dead_code(&scene_module(&structure(vec![program(bsdf)], vec![])));
     }
 }
 
@@ -35,10 +34,10 @@ fn every_bsdf_with_constants() {
                 scalar("third", ScalarNode::Const(s)),
                 scalar("fourth", ScalarNode::Const(s)),
             ];
-            let text = wgsl_module(&structure(vec![program], vec![]));
+            let text = scene_module(&structure(vec![program], vec![]));
             no_dead_code(&text);
             assert!(
-                !text.contains(" params:"),
+                !text.contains("bases.params"),
                 "constants are not loaded\n{text}"
             );
         }
@@ -59,7 +58,7 @@ fn every_image() {
         };
         program.inputs[0] = color("color", ColorNode::Image(image));
         program.inputs[2] = scalar("roughness", ScalarNode::Image(image));
-        let text = wgsl_module(&structure(vec![program], vec![]));
+        let text = scene_module(&structure(vec![program], vec![]));
         no_dead_code(&text);
         assert!(text.contains(" texels:"));
     }
@@ -69,7 +68,7 @@ fn every_image() {
 fn every_light() {
     for light in lights() {
         let matte = program(BsdfNode::Diffuse { albedo: Input(0) });
-        let text = wgsl_module(&structure(vec![matte], vec![light.clone()]));
+        let text = scene_module(&structure(vec![matte], vec![light.clone()]));
         no_dead_code(&text);
         assert!(text.contains("shadow_contribution"));
         assert_eq!(text.contains("fn miss"), light == LightNode::Environment);
@@ -80,14 +79,14 @@ fn every_light() {
 fn every_camera_and_sampler() {
     for camera in [CameraNode::Perspective, CameraNode::Orthographic] {
         for sampler in [AnySampler::Independent, AnySampler::Sobol] {
-            let text = wgsl_module(&Structure {
+            let text = scene_module(&Structure {
                 camera: camera.clone(),
                 sampler,
                 ..structure(vec![], vec![])
             });
             no_dead_code(&text);
             assert!(
-                !text.contains("light") && !text.contains("fn miss"),
+                !text.contains("bases.light") && !text.contains("fn miss"),
                 "a scene without lights picks none"
             );
         }
@@ -104,7 +103,7 @@ fn every_tracer_and_layer() {
     ];
     for (tracer, [shadow, bounce]) in tracers {
         for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
-            let text = wgsl_module(&Structure {
+            let text = scene_module(&Structure {
                 tracer,
                 layers,
                 ..everything()
@@ -119,11 +118,11 @@ fn every_tracer_and_layer() {
 
 #[test]
 fn everything_at_once_and_always_the_same() {
-    let text = wgsl_module(&everything());
+    let text = scene_module(&everything());
     no_dead_code(&text);
-    assert_eq!(text, wgsl_module(&everything()));
-    for buffer in [Buffer::Params, Buffer::Texels, Buffer::Environment] {
-        assert!(text.contains(&format!("@binding({})", buffer as usize)));
+    assert_eq!(text, scene_module(&everything()));
+    for binding in Binding::ALL {
+        assert!(text.contains(&format!("@binding({})", binding as u32)));
     }
     assert!(
         text.lines()
@@ -139,11 +138,11 @@ fn constants_leave_a_short_program() {
     let mut program = program(BsdfNode::Diffuse { albedo: Input(0) });
     program.inputs.truncate(1);
     program.inputs[0] = color("albedo", ColorNode::Const([0.5, 0.25, 0.125]));
-    let text = wgsl_module(&structure(vec![program], vec![]));
+    let text = scene_module(&structure(vec![program], vec![]));
     for absent in [
-        "params",
-        "indices",
-        "normals",
+        "bases.params",
+        "bases.indices",
+        "bases.normals",
         "if ",
         "shadow",
         "seen",
@@ -168,8 +167,8 @@ fn numbers_are_read_back_as_they_were() {
         let tape = Tape::new();
         let d = Record::new(&tape);
         let x = tape.real("x");
-        let text = wgsl_function(
-            &tape.function("f", Outputs::new().real("y", d.max(x, d.lit(number)))),
+        let text = function_module(
+            &tape.function("f", Outputs::new().real("y", x + d.lit(number))),
             "",
         );
         let module = accept(&text);
@@ -194,7 +193,7 @@ fn operations_without_finite_value_are_printed() {
         .real("quotient", d.select(d.lt(x, one), one / zero, x))
         .real("root", d.sqrt(-one))
         .real("bits", d.from_bits(d.uint(0x7fc0_0000)));
-    no_dead_code(&wgsl_function(&tape.function("f", outputs), "Three"));
+    no_dead_code(&function_module(&tape.function("f", outputs), "Three"));
 }
 
 #[test]

@@ -1,19 +1,6 @@
-//! Names and numbers as WGSL spells them.
+//! Types and numbers as WGSL spells them.
 
-use residual_render::domain::Buffer;
 use residual_render::domain::tape::{Kind, ParameterKind};
-
-/// The name of a buffer: `TrianglePrograms` is `triangle_programs`.
-pub(super) fn buffer_name(buffer: Buffer) -> String {
-    let mut name = String::new();
-    for letter in format!("{buffer:?}").chars() {
-        if letter.is_ascii_uppercase() && !name.is_empty() {
-            name.push('_');
-        }
-        name.push(letter.to_ascii_lowercase());
-    }
-    name
-}
 
 pub(super) fn type_name(kind: ParameterKind) -> &'static str {
     match kind {

@@ -13,13 +13,88 @@ use residual_render::renderer::Renderer;
 use residual_render::sampler::SampleKey;
 use residual_render::surface::{PathRay, SurfaceHit};
 use residual_render::tracer::{self, Features, Path, Settings, Step, Tracer};
+use residual_render::triangle;
 
 /// A recorded function with what is printed around it.
-pub(super) struct Recorded {
-    pub(super) function: Function,
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// The function.
+    pub function: Function,
     /// The structure that it returns, if it has several outputs.
-    pub(super) result: &'static str,
-    pub(super) comment: String,
+    pub result: &'static str,
+    /// What it is for.
+    pub comment: String,
+}
+
+impl Recorded {
+    /// The expression that reads an output from `value`, which the function has returned; `None` if there is no such
+    /// output.
+    pub fn output(&self, value: &str, output: &str) -> Option<String> {
+        let outputs = &self.function.outputs;
+        let is_there = outputs.iter().any(|o| o.name == output);
+        is_there.then(|| match outputs.len() {
+            1 => value.to_owned(),
+            _ => format!("{value}.{output}"),
+        })
+    }
+}
+
+/// What a structure calls for.
+#[derive(Clone, Debug)]
+pub struct SceneFunctions {
+    /// Where paths begin.
+    pub emit: Recorded,
+    /// Of each program.
+    pub programs: Vec<ProgramFunctions>,
+    /// What rays see that hit nothing, if that is anything.
+    pub miss: Option<Recorded>,
+    /// The index of a triangle's program.
+    pub program_of: Recorded,
+}
+
+/// What a material program calls for.
+#[derive(Clone, Debug)]
+pub struct ProgramFunctions {
+    /// What the program is, for readers.
+    pub description: String,
+    /// What becomes of a path that hits it, if anything does.
+    pub step: Option<Recorded>,
+    /// Whether the surface is there at all, if it is not always.
+    pub alpha_test: Option<Recorded>,
+}
+
+impl SceneFunctions {
+    /// Records them.
+    pub fn of(structure: &Structure) -> Self {
+        let outcome = Outcome::of(structure);
+        let programs = structure.programs.iter().enumerate();
+        let programs = programs.map(|(index, program)| ProgramFunctions {
+            description: describe(index, program),
+            step: step(index, program, structure, outcome),
+            alpha_test: program
+                .alpha_test
+                .as_ref()
+                .map(|node| alpha_test(index, node)),
+        });
+        Self {
+            emit: emit(structure),
+            programs: programs.collect(),
+            miss: miss(structure),
+            program_of: program_of(),
+        }
+    }
+}
+
+fn describe(index: usize, program: &Program) -> String {
+    let inputs = program.inputs.iter().enumerate();
+    let inputs: Vec<String> = inputs
+        .map(|(place, input)| format!("{place} {}", input.name))
+        .collect();
+    format!(
+        "Program {index}: {:?}; inputs: {}",
+        program.bsdf,
+        inputs.join(", ")
+    )
 }
 
 /// A hit, as parameters.
@@ -63,7 +138,7 @@ fn settings(tape: &Tape) -> Settings<Record<'_>> {
 /// Whether the structure's tracer ever has a contribution, a shadow ray, a bounce at a hit: all programs return the
 /// same, so that one kernel can take over from another.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Outcome {
+struct Outcome {
     seen: bool,
     shadow: bool,
     bounce: bool,
@@ -71,7 +146,7 @@ pub(super) struct Outcome {
 
 impl Outcome {
     /// Of all programs.
-    pub(super) fn of(structure: &Structure) -> Self {
+    fn of(structure: &Structure) -> Self {
         let of_programs = structure.programs.iter().map(|program| {
             with_step(&Tape::new(), structure, program, |step| Self {
                 seen: step.seen.is_some(),
@@ -209,23 +284,8 @@ fn alpha_test(index: usize, node: &AlphaTestNode) -> Recorded {
     }
 }
 
-/// The functions of a material program.
-pub(super) fn program(
-    index: usize,
-    program: &Program,
-    structure: &Structure,
-    outcome: Outcome,
-) -> Vec<Recorded> {
-    let test = program.alpha_test.as_ref();
-    let test = test.map(|node| alpha_test(index, node));
-    step(index, program, structure, outcome)
-        .into_iter()
-        .chain(test)
-        .collect()
-}
-
 /// What rays that hit nothing see; nothing where the tracer sees nothing.
-pub(super) fn miss(structure: &Structure) -> Option<Recorded> {
+fn miss(structure: &Structure) -> Option<Recorded> {
     let tape = Tape::new();
     let d = Record::new(&tape);
     let path = path(&tape);
@@ -249,7 +309,7 @@ pub(super) fn miss(structure: &Structure) -> Option<Recorded> {
 }
 
 /// Where paths begin.
-pub(super) fn emit(structure: &Structure) -> Recorded {
+fn emit(structure: &Structure) -> Recorded {
     let tape = Tape::new();
     let d = Record::new(&tape);
     let pixel = ["x", "y"].map(|name| tape.word(name));
@@ -274,5 +334,16 @@ pub(super) fn emit(structure: &Structure) -> Recorded {
             "{:?}, {:?}: a path of throughput 1 through a place of the pixel at (x, y).",
             structure.camera, structure.sampler
         ),
+    }
+}
+
+fn program_of() -> Recorded {
+    let tape = Tape::new();
+    let d = Record::new(&tape);
+    let program = triangle::program_of(d, tape.word("prim"));
+    Recorded {
+        function: tape.function("program_of", Outputs::new().word("program", program)),
+        result: "",
+        comment: "The index of a triangle's program.".to_owned(),
     }
 }

@@ -1,12 +1,12 @@
 //! One recorded function as WGSL.
 
-use std::collections::BTreeSet;
-
 use residual_render::domain::tape::{
     Choice, Function, Id, Node, Op, Output, ParameterKind, Statement,
 };
 
-use super::names::{buffer_name, constant, kind_name, type_name};
+use crate::arithmetic::{Arithmetic, Division, Fma, Helper, SquareRoot};
+use crate::bindings::{self, Bindings};
+use crate::names::{constant, kind_name, type_name};
 
 /// Expressions that are used once and no longer than this are written where they are used.
 const INLINE: usize = 72;
@@ -16,8 +16,7 @@ const WIDTH: usize = 100;
 /// A function as text, and what it refers to.
 pub(super) struct Printed {
     pub(super) text: String,
-    pub(super) buffers: BTreeSet<usize>,
-    pub(super) copysign: bool,
+    pub(super) bindings: Bindings,
 }
 
 /// The text of an expression.
@@ -30,6 +29,7 @@ struct Text {
 
 struct Printer<'a> {
     function: &'a Function,
+    arithmetic: Arithmetic,
     uses: Vec<u32>,
     texts: Vec<Option<Text>>,
     /// How many names have been given out.
@@ -39,7 +39,7 @@ struct Printer<'a> {
 }
 
 /// Prints a function. Several outputs are returned as the structure `result`.
-pub(super) fn print(function: &Function, result: &str) -> Printed {
+pub(super) fn print(function: &Function, result: &str, arithmetic: Arithmetic) -> Printed {
     let mut uses = vec![0; function.nodes()];
     count_uses(function, &function.body, &mut uses);
     for &value in function.outputs.iter().flat_map(|output| &output.values) {
@@ -47,14 +47,14 @@ pub(super) fn print(function: &Function, result: &str) -> Printed {
     }
     let mut printer = Printer {
         function,
+        arithmetic,
         uses,
         texts: vec![None; function.nodes()],
         names: 0,
         indent: 1,
         printed: Printed {
             text: String::new(),
-            buffers: BTreeSet::new(),
-            copysign: false,
+            bindings: Bindings::default(),
         },
     };
     printer.function(result);
@@ -274,8 +274,8 @@ impl Printer<'_> {
         match self.function.node(id) {
             Node::Apply { op, operands } => self.apply(op, operands),
             Node::Load { buffer, index } => {
-                self.printed.buffers.insert(buffer as usize);
-                let text = format!("{}[{}]", buffer_name(buffer), self.text(index).text);
+                self.printed.bindings.insert(buffer);
+                let text = bindings::load(buffer, &self.operand(index));
                 Text {
                     text,
                     primary: true,
@@ -289,7 +289,7 @@ impl Printer<'_> {
         }
     }
 
-    fn apply(&mut self, op: Op, operands: [Id; 3]) -> Text {
+    fn apply(&self, op: Op, operands: [Id; 3]) -> Text {
         let call = |name: &str| {
             let arguments = operands[..op.arity()].iter().map(|&id| self.text(id).text);
             let text = format!("{name}({})", arguments.collect::<Vec<_>>().join(", "));
@@ -320,23 +320,29 @@ impl Printer<'_> {
                 primary: false,
             }
         };
+        let helper = |helper: Helper| call(helper.name());
         match op {
             Op::Add | Op::AddU => infix("+"),
             Op::Sub | Op::SubU => infix("-"),
             Op::Mul | Op::MulU => infix("*"),
-            Op::Div => infix("/"),
+            Op::Div => match self.arithmetic.division {
+                Division::Native => infix("/"),
+                Division::Double => helper(Helper::Quotient),
+            },
             Op::Neg => prefix("-"),
-            Op::Sqrt => call("sqrt"),
-            Op::Min => call("min"),
-            Op::Max => call("max"),
+            Op::Sqrt => match self.arithmetic.square_root {
+                SquareRoot::Native => call("sqrt"),
+                SquareRoot::Double => helper(Helper::Root),
+            },
+            Op::Min => helper(Helper::Least),
+            Op::Max => helper(Helper::Greatest),
             Op::Abs => call("abs"),
             Op::Floor => call("floor"),
-            Op::Fma => call("fma"),
-            Op::Copysign => {
-                let text = call("copysign");
-                self.printed.copysign = true;
-                text
-            }
+            Op::Fma => match self.arithmetic.fma {
+                Fma::Native => call("fma"),
+                Fma::Double | Fma::Unfused => helper(Helper::Fused),
+            },
+            Op::Copysign => helper(Helper::Copysign),
             Op::Lt | Op::LtU => infix("<"),
             Op::Le => infix("<="),
             Op::Eq | Op::EqU => infix("=="),

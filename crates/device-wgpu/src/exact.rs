@@ -1,0 +1,130 @@
+//! WGSL as SPIR-V in which no operation may be contracted or reassociated.
+//!
+//! naga's writer says nothing of it, and drivers take liberties: here every result of arithmetic on floating-point numbers
+//! is decorated with `NoContraction` (SPIR-V specification, section 3.20), which takes that freedom away.
+
+use naga::back::spv;
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+/// A module for drivers.
+pub(crate) struct Spirv {
+    pub(crate) words: Vec<u32>,
+    /// Entry points with the sizes of their workgroups.
+    pub(crate) entry_points: Vec<(String, [u32; 3])>,
+}
+
+/// Translates a text.
+///
+/// # Errors
+/// With naga's words, if it does not accept the text.
+pub(crate) fn spirv(text: &str) -> Result<Spirv, String> {
+    let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::FLOAT64)
+        .validate(&module)
+        .map_err(|error| error.emit_to_string(text))?;
+    let unchecked = BoundsCheckPolicy::Unchecked;
+    let options = spv::Options {
+        lang_version: (1, 3),
+        flags: spv::WriterFlags::empty(),
+        bounds_check_policies: BoundsCheckPolicies {
+            index: unchecked,
+            buffer: unchecked,
+            image_load: unchecked,
+            binding_array: unchecked,
+        },
+        zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
+        force_loop_bounding: false,
+        fake_missing_bindings: true,
+        emit_int_div_checks: false,
+        ..spv::Options::default()
+    };
+    let words = spv::write_vec(&module, &info, &options, None).map_err(|e| e.to_string())?;
+    let entry_points = module.entry_points.iter();
+    Ok(Spirv {
+        words: decorate(&words),
+        entry_points: entry_points
+            .map(|point| (point.name.clone(), point.workgroup_size))
+            .collect(),
+    })
+}
+
+/// Instructions of SPIR-V, by their numbers in section 3.52 of its specification.
+mod op {
+    pub(super) const EXT_INST_IMPORT: u32 = 11;
+    pub(super) const EXT_INST: u32 = 12;
+    pub(super) const TYPE_VOID: u32 = 19;
+    pub(super) const TYPE_FORWARD_POINTER: u32 = 39;
+    pub(super) const DECORATE: u32 = 71;
+    pub(super) const F_NEGATE: u32 = 127;
+    pub(super) const F_ADD: u32 = 129;
+    pub(super) const F_SUB: u32 = 131;
+    pub(super) const F_MUL: u32 = 133;
+    pub(super) const F_DIV: u32 = 136;
+    pub(super) const F_REM: u32 = 140;
+    /// `OpFRem` to `OpDot`: remainders and products with vectors and matrices.
+    pub(super) const DOT: u32 = 148;
+}
+/// `Fma` of GLSL.std.450.
+const GLSL_FMA: u32 = 50;
+const NO_CONTRACTION: u32 = 42;
+/// Words before the first instruction.
+const HEADER: usize = 5;
+
+/// The same module with `NoContraction` on the results of floating-point arithmetic.
+fn decorate(words: &[u32]) -> Vec<u32> {
+    let (mut at, mut glsl, mut results, mut first_type) = (HEADER, 0, Vec::new(), None);
+    while at < words.len() {
+        let (code, length) = (words[at] & 0xffff, (words[at] >> 16) as usize);
+        match code {
+            op::EXT_INST_IMPORT => glsl = words[at + 1],
+            op::F_NEGATE | op::F_ADD | op::F_SUB | op::F_MUL | op::F_DIV => {
+                results.push(words[at + 2]);
+            }
+            op::F_REM..=op::DOT => results.push(words[at + 2]),
+            op::EXT_INST if words[at + 3] == glsl && words[at + 4] == GLSL_FMA => {
+                results.push(words[at + 2]);
+            }
+            op::TYPE_VOID..=op::TYPE_FORWARD_POINTER => {
+                first_type.get_or_insert(at);
+            }
+            _ => {}
+        }
+        at += length;
+    }
+    // Decorations stand before the first type.
+    let first_type = first_type.unwrap_or(words.len());
+    let mut decorated = words[..first_type].to_vec();
+    for result in results {
+        decorated.extend([3 << 16 | op::DECORATE, result, NO_CONTRACTION]);
+    }
+    decorated.extend(&words[first_type..]);
+    decorated
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arithmetic_is_decorated_and_nothing_else() {
+        let text = "@group(0) @binding(0) var<storage, read_write> x: array<f32>;
+            @compute @workgroup_size(8, 2) fn main(@builtin(global_invocation_id) id: vec3u) {
+                x[id.x] = fma(x[0], x[1], -x[2]) * (x[3] + x[4]) / x[5] - floor(x[6]);
+            }";
+        let spirv = spirv(text).unwrap();
+        assert_eq!(spirv.entry_points, [("main".to_owned(), [8, 2, 1])]);
+        let no_contraction = spirv
+            .words
+            .windows(3)
+            .filter(|w| w[0] == 3 << 16 | op::DECORATE && w[2] == NO_CONTRACTION);
+        // fma, negation, product, sum, quotient, difference.
+        assert_eq!(no_contraction.count(), 6);
+    }
+
+    #[test]
+    fn texts_that_are_no_wgsl_are_refused_in_words() {
+        let error = spirv("fn main() { let x = ; }").err().unwrap();
+        assert!(error.contains("expected"), "{error}");
+    }
+}

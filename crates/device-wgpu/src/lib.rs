@@ -1,0 +1,23 @@
+//! Renders on GPUs, through wgpu: the wavefront of the thesis, section 4.1.
+//!
+//! Everything that is computed along paths is recorded from the formulas of `residual-render` and printed by
+//! `residual-wgsl`; written here are traversal and scheduling only. Samples go back to the same
+//! [`Film`](residual_render::film::Film) as the processor's.
+
+mod error;
+mod exact;
+mod gpu;
+mod kernels;
+mod launch;
+mod renderer;
+mod scene;
+mod shader;
+mod stages;
+mod tree;
+mod wavefront;
+
+pub use error::Error;
+pub use gpu::{AdapterDescription, Gpu, list_adapters};
+pub use kernels::{Kernels, Traits};
+pub use renderer::WgpuRenderer;
+pub use shader::{Dialect, Mode};

@@ -1,0 +1,43 @@
+// Shadow rays come first, then the rays of paths.
+@compute @workgroup_size(WORKGROUP)
+fn trace(@builtin(global_invocation_id) id: vec3u) {
+    let shadows = atomicLoad(&queues.shadows);
+    let is_shadow = id.x < shadows;
+    if id.x >= shadows + queues.live {
+        return;
+    }
+    var org: vec3f;
+    var dir: vec3f;
+    var tmax: f32;
+    var slot: u32;
+    if is_shadow {
+        org = shadow_rays[id.x].org;
+        dir = shadow_rays[id.x].dir;
+        tmax = shadow_rays[id.x].tmax;
+        slot = shadow_rays[id.x].slot;
+    } else {
+        slot = queues.entries[queues.side * settings.slots + id.x - shadows];
+        org = paths[slot].org;
+        dir = paths[slot].dir;
+        tmax = FARTHEST;
+    }
+    let hit = traverse(org, dir, tmax, is_shadow);
+    if is_shadow {
+        if hit.prim == NONE {
+            add(slot, shadow_rays[id.x].contribution);
+        }
+        return;
+    }
+    var queue = QUEUES - 1u;
+    if hit.prim != NONE {
+        queue = program_of(hit.prim);
+    }
+    paths[slot].hit = vec4u(queue, bitcast<u32>(hit.u), bitcast<u32>(hit.v), hit.prim);
+    atomicAdd(&queues.counts[queue], 1u);
+    //[visits
+    // The processor makes a colour of it.
+    if paths[slot].depth == 1u {
+        samples[slot * STRIDE] = f32(visits);
+    }
+    //]
+}

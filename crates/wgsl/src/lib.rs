@@ -1,0 +1,52 @@
+//! A renderer's structure as WGSL.
+//!
+//! Every function is recorded from the formulas of `residual-render` (thesis, section 3.1); none is written here. Devices
+//! call them from kernels of their own: [`SceneFunctions`] has what a structure calls for, [`Module`] the text around it.
+//!
+//! Printed text keeps the contract of [`Domain`](residual_render::domain::Domain) as far as WGSL allows, and an
+//! [`Arithmetic`] says how operations are spelled that adapters round differently.
+
+mod arithmetic;
+mod bindings;
+mod functions;
+mod module;
+mod names;
+mod print;
+
+pub use arithmetic::{Arithmetic, Division, Fma, SquareRoot};
+pub use bindings::Binding;
+pub use functions::{ProgramFunctions, Recorded, SceneFunctions};
+pub use module::Module;
+
+use residual_render::domain::tape::Function;
+use residual_render::program::Structure;
+
+/// The functions of a scene in one text: `emit`, for each program `program_K_step` and `_alpha_test`, and `miss`. What the
+/// scene does not call for is not there.
+pub fn scene_module(structure: &Structure) -> String {
+    let functions = SceneFunctions::of(structure);
+    let mut module = Module::new(Arithmetic::default());
+    module.add(&functions.emit);
+    for program in &functions.programs {
+        module.heading(&program.description);
+        for function in program.step.iter().chain(&program.alpha_test) {
+            module.add(function);
+        }
+    }
+    if let Some(miss) = &functions.miss {
+        module.add(miss);
+    }
+    module.finish()
+}
+
+/// One recorded function as a text of its own, several outputs in the structure `result`, with what it refers to.
+pub fn function_module(function: &Function, result: &'static str) -> String {
+    let mut module = Module::new(Arithmetic::default());
+    let comment = function.name.replace('_', " ");
+    module.add(&Recorded {
+        function: function.clone(),
+        result,
+        comment,
+    });
+    module.finish()
+}
