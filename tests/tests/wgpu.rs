@@ -2,15 +2,15 @@
 
 use residual_bvh::{BuildQuality, build};
 use residual_device_cpu::LaneCount;
-use residual_device_wgpu::{Dialect, Gpu, Mode, WgpuRenderer};
+use residual_device_wgpu::{Dialect, Gpu, Mapping, Mode, WgpuRenderer};
 use residual_render::film::Film;
 use residual_render::passes::Pass;
 use residual_render::tracer::TracerOptions;
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
 use residual_tests::{Look, Prepared, read_scene};
-use residual_wgsl::{Arithmetic, Fma};
+use residual_wgsl::Arithmetic;
 
-fn gpu_film(gpu: &Gpu, plan: &Plan, look: &Look, dialect: Dialect) -> Film {
+fn gpu_film(gpu: &Gpu, plan: &Plan, look: &Look, dialect: Dialect, mapping: Mapping) -> Film {
     let bvh = build::<4, 4>(
         &plan.data.positions(),
         &plan.data.triangles(),
@@ -21,7 +21,7 @@ fn gpu_film(gpu: &Gpu, plan: &Plan, look: &Look, dialect: Dialect) -> Film {
         BuildQuality::Fast,
     );
     let t = std::time::Instant::now();
-    let renderer = WgpuRenderer::new(gpu, dialect, &plan.structure, &plan.data, &bvh, look.size)
+    let renderer = WgpuRenderer::new(gpu, dialect, mapping, &plan.structure, &plan.data, &bvh, look.size)
         .unwrap_or_else(|e| panic!("{e}"));
     println!("compiled {:?}", t.elapsed());
     let mut film = Film::new(look.size[0], look.size[1], 64, plan.structure.layers);
@@ -54,13 +54,19 @@ fn first() {
         return;
     };
     println!("{}", gpu.adapter);
+    let probe = gpu.probe().unwrap_or_else(|e| panic!("{e}"));
+    println!(
+        "plain: {}\nchosen: {:?}: {}",
+        probe.plain, probe.dialect, probe.answers
+    );
     let Some(scenes) = residual_tests::scenes() else {
         return;
     };
     let names = std::env::var("SCENES").unwrap_or("interiors/cornell-box.glb".into());
     for name in names.split(',') {
         let scene = read_scene(&scenes.join(name), None).unwrap();
-        let size = [64, 64];
+        let side = std::env::var("SIDE").map_or(64, |s| s.parse().unwrap());
+        let size = [side, side];
         let plan = plan(
             &scene,
             &PlanOptions {
@@ -69,29 +75,25 @@ fn first() {
             },
         )
         .unwrap();
-        let look = Look::new(size, 4);
+        let look = Look::new(size, std::env::var("SPP").map_or(4, |s| s.parse().unwrap()));
         let cpu = Prepared::new(&plan, LaneCount::native()).interpret(&look);
-        for dialect in [
-            Dialect {
-                mode: Mode::Exact,
-                arithmetic: Arithmetic {
-                    fma: Fma::Double,
-                    ..Arithmetic::default()
+        for (dialect, mapping) in [
+            (probe.dialect, Mapping::Wavefront),
+            (probe.dialect, Mapping::Megakernel),
+            (
+                Dialect {
+                    mode: Mode::Plain,
+                    arithmetic: Arithmetic::default(),
                 },
-            },
-            Dialect {
-                mode: Mode::Plain,
-                arithmetic: Arithmetic {
-                    fma: Fma::Double,
-                    ..Arithmetic::default()
-                },
-            },
+                Mapping::Wavefront,
+            ),
         ] {
-            let film = gpu_film(&gpu, &plan, &look, dialect);
+            let film = gpu_film(&gpu, &plan, &look, dialect, mapping);
             let (a, b) = (cpu.image(), film.image());
             let same = a.iter().zip(&b).filter(|(a, b)| a == b).count();
             println!(
-                "{name} {dialect:?}: {same} of {} pixels equal; means {:?} {:?}; {}",
+                "{name} {mapping} {:?}: {same} of {} pixels equal; means {:?} {:?}; {}",
+                dialect.mode,
                 a.len(),
                 cpu.mean(),
                 film.mean(),

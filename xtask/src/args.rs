@@ -36,6 +36,8 @@ pub(crate) enum Command {
     /// Compiled renderers that are kept
     #[command(subcommand)]
     Cache(CacheCommand),
+    /// List the GPUs and what their arithmetic is like
+    Adapters,
     /// Measure speed
     #[command(disable_help_flag = true)]
     Bench(PassedOn),
@@ -117,6 +119,15 @@ pub(crate) struct RenderArgs {
     pub(crate) scene: SceneArgs,
     #[command(flatten)]
     pub(crate) render: residual_frontend::options::RenderArgs,
+    /// What renders
+    #[arg(long, value_enum, default_value_t = DeviceArg::Cpu)]
+    pub(crate) device: DeviceArg,
+    /// How a GPU's work is divided into kernels
+    #[arg(long, value_enum, default_value_t = MappingArg::Wavefront)]
+    pub(crate) mapping: MappingArg,
+    /// The GPU whose name contains this; cargo xtask adapters lists them [default: the fastest kind]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
     /// How the renderer is made from the scene
     #[arg(long, value_enum, default_value_t = TierArg::Auto)]
     pub(crate) tier: TierArg,
@@ -271,6 +282,22 @@ pub(crate) enum TierArg {
     Interpreted,
     /// Compiled before the first ray
     Specialized,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DeviceArg {
+    /// The processor
+    Cpu,
+    /// A GPU, or a software driver for one
+    Wgpu,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MappingArg {
+    /// A kernel for each kind of work, between which paths wait in queues
+    Wavefront,
+    /// One kernel, in which a thread follows a path to its end
+    Megakernel,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -10,13 +10,15 @@ mod emit;
 mod inspect;
 mod prices;
 mod render;
+#[cfg(feature = "wgpu")]
+mod render_wgpu;
 mod scene;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::args::{Cli, Command};
+use crate::args::{Cli, Command, DeviceArg};
 
 /// The command line: status 0, 1 for a failed job, 2 for bad usage.
 pub fn main() -> ExitCode {
@@ -29,11 +31,21 @@ pub fn main() -> ExitCode {
 
 fn run(command: Command) -> anyhow::Result<ExitCode> {
     match command {
-        Command::Render(args) => render::run(&args)?,
+        Command::Render(args) => match args.device {
+            DeviceArg::Cpu => render::run(&args)?,
+            #[cfg(feature = "wgpu")]
+            DeviceArg::Wgpu => render_wgpu::run(&args)?,
+            #[cfg(not(feature = "wgpu"))]
+            DeviceArg::Wgpu => return delegate::all_to_package("xtask-wgpu"),
+        },
         Command::Inspect(args) => inspect::run(&args)?,
         Command::Emit(args) => emit::run(&args)?,
         Command::Build(args) => build::run(&args)?,
         Command::Cache(command) => cache::run(command)?,
+        #[cfg(feature = "wgpu")]
+        Command::Adapters => render_wgpu::adapters()?,
+        #[cfg(not(feature = "wgpu"))]
+        Command::Adapters => return delegate::all_to_package("xtask-wgpu"),
         Command::Bench(passed_on) => return delegate::to_package("residual-benches", &passed_on),
         Command::Check(passed_on) => return delegate::to_package("residual-check", &passed_on),
     }

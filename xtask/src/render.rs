@@ -1,4 +1,4 @@
-//! `cargo xtask render`.
+//! `cargo xtask render` on the processor.
 
 use std::convert::Infallible;
 use std::time::{Duration, Instant};
@@ -8,7 +8,7 @@ use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView};
 use residual_driver::tiers::{Ledger, Tiers};
 use residual_frontend::hierarchy_quality;
 use residual_frontend::session::Session;
-use residual_frontend::stats::{Preparation, Statistics};
+use residual_frontend::stats::{DeviceReport, Preparation, Statistics};
 
 use crate::args::{RenderArgs, SpecializeArg, TierArg};
 use crate::scene;
@@ -80,7 +80,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         },
         total: session.start.elapsed(),
         tiers: tiers.report(&ledger, device.threads()),
-        device: "cpu",
+        device: DeviceReport::Cpu,
         threads: device.threads(),
         lanes: lanes.count(),
         bvh_bytes,

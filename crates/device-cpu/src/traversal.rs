@@ -89,6 +89,14 @@ impl AnyBvh {
         }
     }
 
+    /// The hierarchy itself, if it is four wide: GPUs traverse such.
+    pub fn four_wide(&self) -> Option<&Bvh<4>> {
+        match &self.tree {
+            Tree::Four(bvh) => Some(bvh),
+            Tree::Eight(_) | Tree::Sixteen(_) => None,
+        }
+    }
+
     /// Bytes of its nodes and triangles.
     pub fn memory_bytes(&self) -> usize {
         match &self.tree {

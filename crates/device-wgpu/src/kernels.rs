@@ -13,6 +13,7 @@ const PATHS: &str = include_str!("wgsl/paths.wgsl");
 const TRAVERSAL: &str = include_str!("wgsl/traversal.wgsl");
 const TRACE: &str = include_str!("wgsl/trace.wgsl");
 const SCATTER: &str = include_str!("wgsl/scatter.wgsl");
+const FOLLOW: &str = include_str!("wgsl/follow.wgsl");
 
 /// What a scene calls for, as texts for one adapter.
 pub struct Kernels {
@@ -49,9 +50,9 @@ impl Kernels {
         self.functions.programs.len() + 1
     }
 
-    /// Whether a hit on a program, or a miss for the number behind them, has a kernel.
-    pub fn has_step(&self, queue: usize) -> bool {
-        self.step(queue).is_some()
+    /// The queues of whose hits something comes: of programs, and the last of what rays see that hit nothing.
+    pub fn queues_with_steps(&self) -> impl Iterator<Item = usize> {
+        (0..self.queues()).filter(|&queue| self.step(queue).is_some())
     }
 
     fn step(&self, queue: usize) -> Option<&Recorded> {
@@ -90,26 +91,35 @@ impl Kernels {
     pub fn emit(&self) -> String {
         let mut module = self.module();
         module.add(&self.functions.emit);
-        let call = call(&self.functions.emit);
+        let start = self.start();
         module.add_text(&format!(
             "\
 @compute @workgroup_size(WORKGROUP)
 fn emit_paths(@builtin(global_invocation_id) id: vec3u) {{
-    let slot = id.x;
+{start}    paths[slot] = path;
+    queues.entries[slot] = slot;
+}}
+"
+        ));
+        module.finish()
+    }
+
+    /// Makes the `path` of a `slot`, and clears its sample.
+    fn start(&self) -> String {
+        let call = call(&self.functions.emit);
+        format!(
+            "    let slot = id.x;
     if slot >= settings.count {{
         return;
     }}
     let place = pixel_of(slot);
     let start = {call};
-    paths[slot] = Path(start.org, 0.0f, start.dir, start.pixel, vec3f(1.0f), 1u, vec4u(0u));
-    queues.entries[slot] = slot;
+    var path = Path(start.org, 0.0f, start.dir, start.pixel, vec3f(1.0f), 1u, vec4u(0u));
     for (var k = 0u; k < STRIDE; k++) {{
         samples[slot * STRIDE + k] = 0.0f;
     }}
-}}
 "
-        ));
-        module.finish()
+        )
     }
 
     /// `trace`: closest hits of paths, and occlusion of shadow rays.
@@ -177,7 +187,7 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
         let step = self.step(queue).expect("the queue has a step");
         let mut module = self.module();
         module.add(step);
-        let body = self.take_step(step, "");
+        let body = self.take_step(step, &QUEUED);
         module.add_text(&format!(
             "\
 @compute @workgroup_size(WORKGROUP)
@@ -193,45 +203,47 @@ fn shade(@builtin(global_invocation_id) id: vec3u) {{
         module.finish()
     }
 
+    /// `follow_path`: everything in one kernel.
+    pub fn megakernel(&self) -> String {
+        let mut module = self.module();
+        module.add(&self.functions.emit);
+        self.add_traversal(&mut module);
+        let mut cases = String::new();
+        for queue in self.queues_with_steps() {
+            let step = self.step(queue).expect("the queue has a step");
+            module.add(step);
+            let body = self.take_step(step, &FOLLOWED);
+            cases += &format!("            case {queue}u: {{\n{body}            }}\n");
+        }
+        let start = self.start();
+        let body = sections(FOLLOW, &self.section_names())
+            .replace("//START\n", &start)
+            .replace("//CASES\n", &cases);
+        module.add_text(&body);
+        module.finish()
+    }
+
     /// What becomes of `path` in `slot`.
-    fn take_step(&self, step: &Recorded, indent: &str) -> String {
-        let mut body = format!("{indent}    let step = {};\n", call(step));
+    fn take_step(&self, step: &Recorded, way: &WayOn) -> String {
+        let WayOn {
+            indent,
+            shadow,
+            bounce,
+        } = way;
+        let mut body = format!("{indent}let step = {};\n", call(step));
         let output = |name: &str| step.output("step", name);
         if let Some(seen) = output("seen") {
-            body += &format!("{indent}    add(slot, {seen});\n");
+            body += &format!("{indent}add(slot, {seen});\n");
         }
         body += &self.keep_layers(step, indent);
-        if let (Some(org), Some(dir), Some(tmax), Some(contribution), Some(active)) = (
-            output("shadow_org"),
-            output("shadow_dir"),
-            output("shadow_tmax"),
-            output("shadow_contribution"),
-            output("shadow_active"),
-        ) {
-            body += &format!(
-                "\
-{indent}    if {active} {{
-{indent}        let place = atomicAdd(&queues.shadows, 1u);
-{indent}        shadow_rays[place] = ShadowRay({org}, {tmax}, {dir}, slot, {contribution});
-{indent}    }}
-"
-            );
-        }
-        if let (Some(org), Some(dir), Some(throughput), Some(pdf), Some(active)) = (
-            output("bounce_org"),
-            output("bounce_dir"),
-            output("bounce_throughput"),
-            output("bounce_pdf"),
-            output("bounce_active"),
-        ) {
-            body += &format!(
-                "\
-{indent}    if {active} {{
-{indent}        paths[slot] = Path({org}, {pdf}, {dir}, path.pixel, {throughput}, path.depth + 1u, vec4u(0u));
-{indent}        queues.entries[(1u - queues.side) * settings.slots + atomicAdd(&queues.next, 1u)] = slot;
-{indent}    }}
-"
-            );
+        for (kind, lines) in [("shadow", shadow), ("bounce", bounce)] {
+            if let Some(active) = output(&format!("{kind}_active")) {
+                body += &format!("{indent}if {active} {{\n");
+                for line in *lines {
+                    body += &format!("{indent}    {line}\n");
+                }
+                body += &format!("{indent}}}\n");
+            }
         }
         body
     }
@@ -248,16 +260,49 @@ fn shade(@builtin(global_invocation_id) id: vec3u) {{
                 let component = if channels == 1 { "" } else { component };
                 let place = first + channel;
                 lines += &format!(
-                    "{indent}        samples[slot * STRIDE + {place}u] = {value}{component};\n"
+                    "{indent}    samples[slot * STRIDE + {place}u] = {value}{component};\n"
                 );
             }
         }
         match lines.is_empty() {
             true => lines,
-            false => format!("{indent}    if path.depth == 1u {{\n{lines}{indent}    }}\n"),
+            false => format!("{indent}if path.depth == 1u {{\n{lines}{indent}}}\n"),
         }
     }
 }
+
+/// How a path goes on: statements on what `step` has.
+struct WayOn {
+    indent: &'static str,
+    shadow: &'static [&'static str],
+    bounce: &'static [&'static str],
+}
+
+/// Through queues.
+const QUEUED: WayOn = WayOn {
+    indent: "    ",
+    shadow: &[
+        "let place = atomicAdd(&queues.shadows, 1u);",
+        "shadow_rays[place] = ShadowRay(step.shadow_org, step.shadow_tmax, step.shadow_dir, slot, step.shadow_contribution);",
+    ],
+    bounce: &[
+        "paths[slot] = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, path.depth + 1u, vec4u(0u));",
+        "queues.entries[(1u - queues.side) * settings.slots + atomicAdd(&queues.next, 1u)] = slot;",
+    ],
+};
+
+/// In the same thread.
+const FOLLOWED: WayOn = WayOn {
+    indent: "                ",
+    shadow: &[
+        "is_shadow = true;",
+        "shadow = ShadowRay(step.shadow_org, step.shadow_tmax, step.shadow_dir, slot, step.shadow_contribution);",
+    ],
+    bounce: &[
+        "goes_on = true;",
+        "path = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, path.depth + 1u, vec4u(0u));",
+    ],
+};
 
 /// The call of a recorded function where there are `slot`, `path`, or what emission and alpha tests have instead.
 fn call(recorded: &Recorded) -> String {

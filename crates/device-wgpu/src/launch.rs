@@ -3,6 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use residual_render::tracer::TracerOptions;
 
+/// Threads of a workgroup.
+pub(crate) const WORKGROUP: u32 = 64;
 /// Pixels along the side of a block; kernels number pixels block by block.
 const BLOCK: u32 = 8;
 
@@ -19,7 +21,7 @@ pub(crate) struct Settings {
     pub(crate) count: u32,
     pub(crate) slots: u32,
     seed: u32,
-    max_depth: u32,
+    pub(crate) max_depth: u32,
     roulette_from: u32,
     reach: f32,
     first_packet: u32,

@@ -4,20 +4,25 @@
 //! `residual-wgsl`; written here are traversal and scheduling only. Samples go back to the same
 //! [`Film`](residual_render::film::Film) as the processor's.
 
+mod bindings;
 mod error;
 mod exact;
 mod gpu;
 mod kernels;
 mod launch;
+mod megakernel;
+mod probe;
 mod renderer;
 mod scene;
 mod shader;
 mod stages;
+mod state;
 mod tree;
 mod wavefront;
 
 pub use error::Error;
 pub use gpu::{AdapterDescription, Gpu, list_adapters};
 pub use kernels::{Kernels, Traits};
-pub use renderer::WgpuRenderer;
+pub use probe::{Answers, Probe, Question};
+pub use renderer::{Mapping, WgpuRenderer};
 pub use shader::{Dialect, Mode};

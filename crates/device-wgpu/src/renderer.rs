@@ -1,5 +1,6 @@
 //! A scene on a device, rendered pass by pass into the same film as the processor's.
 
+use std::fmt;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -14,26 +15,53 @@ use residual_render::tracer::{CostMap, DebugView, TracerNode, TracerOptions};
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::kernels::{Kernels, Traits};
-use crate::launch::Places;
+use crate::launch::{Places, Settings};
+use crate::megakernel::Megakernel;
 use crate::scene::Scene;
 use crate::shader::Dialect;
 use crate::stages::{Stage, Stopwatch};
-use crate::wavefront::{Wavefront, bytes_per_path};
+use crate::state::{Header, State, bytes_per_path};
+use crate::wavefront::Wavefront;
 
 /// Paths under way at once: enough to fill a GPU.
 const PATHS: u32 = 1 << 20;
 
+/// How work is divided into kernels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mapping {
+    /// A kernel for each kind of work, between which paths wait in queues.
+    #[default]
+    Wavefront,
+    /// One kernel, in which a thread follows a path to its end.
+    Megakernel,
+}
+
+impl fmt::Display for Mapping {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Wavefront => "wavefront",
+            Self::Megakernel => "megakernel",
+        })
+    }
+}
+
 /// Renders a scene on a GPU.
 pub struct WgpuRenderer<'g> {
     gpu: &'g Gpu,
-    dialect: Dialect,
-    wavefront: Wavefront,
+    kernels: Compiled,
+    state: State,
     places: Places,
     layers: Layers,
     cost_map: Option<CostMap>,
     slots: u32,
     first_packet: u32,
     memory: u64,
+}
+
+/// Kernels of either mapping.
+enum Compiled {
+    Wavefront(Wavefront),
+    Megakernel(Megakernel),
 }
 
 impl<'g> WgpuRenderer<'g> {
@@ -44,41 +72,80 @@ impl<'g> WgpuRenderer<'g> {
     pub fn new(
         gpu: &'g Gpu,
         dialect: Dialect,
+        mapping: Mapping,
         structure: &Structure,
         data: &SceneData,
         bvh: &Bvh<4>,
         size: [u32; 2],
     ) -> Result<Self, Error> {
-        let layers = structure.layers;
-        let cost_map =
-            (structure.tracer == TracerNode::Debug(DebugView::TraversalCost)).then_some(CostMap);
+        let (layers, stride) = (structure.layers, structure.layers.stride());
+        let shows_traversal = structure.tracer == TracerNode::Debug(DebugView::TraversalCost);
         let traits = Traits {
             sided: data.single_sided.contains(&true),
-            visits: cost_map.is_some(),
+            visits: shows_traversal,
             f64: gpu.has(wgpu::Features::SHADER_F64),
         };
-        let places = Places::new(size);
-        let slots = slots(gpu, places, layers.stride());
         let kernels = Kernels::new(structure, traits, dialect.arithmetic);
+        let places = Places::new(size);
+        let slots = slots(gpu, places, stride);
+        let queued = match mapping {
+            Mapping::Wavefront => slots,
+            Mapping::Megakernel => 1,
+        };
         let scene = Scene::new(gpu, data, bvh)?;
-        let wavefront = Wavefront::new(gpu, dialect, &kernels, &scene, slots, layers.stride())?;
+        let state = State::new(gpu, &scene, kernels.queues(), slots, queued, stride);
+        let mode = dialect.mode;
+        let compiled = match mapping {
+            Mapping::Wavefront => Compiled::Wavefront(Wavefront::new(gpu, mode, &kernels, &state)?),
+            Mapping::Megakernel => {
+                Compiled::Megakernel(Megakernel::new(gpu, mode, &kernels, &state)?)
+            }
+        };
         gpu.check()?;
         Ok(Self {
             gpu,
-            dialect,
-            wavefront,
+            kernels: compiled,
+            state,
             places,
             layers,
-            cost_map,
+            cost_map: shows_traversal.then_some(CostMap),
             slots,
             first_packet: scene.first_packet,
-            memory: scene.bytes + u64::from(slots) * bytes_per_path(layers.stride()),
+            memory: scene.bytes + u64::from(slots) * bytes_per_path(stride),
         })
     }
 
-    /// How kernels compute.
-    pub fn dialect(&self) -> Dialect {
-        self.dialect
+    /// The image is of what traversal visits, which depends on the hierarchy.
+    pub fn shows_traversal(&self) -> bool {
+        self.cost_map.is_some()
+    }
+
+    /// Runs the kernels once, on few paths: some drivers compile no sooner.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn warm_up(&self) -> Result<(), Error> {
+        let [width, height] = [64; 2];
+        let options = TracerOptions {
+            image: [width, height],
+            seed: 0,
+            max_depth: 2,
+            roulette_from: 2,
+            reach: f32::MAX,
+        };
+        let mut settings = self
+            .places
+            .settings(&options, self.slots, self.first_packet);
+        settings.count = self.slots.min(64);
+        self.launch(&settings, &mut Stopwatch::new(self.gpu))?;
+        Ok(())
+    }
+
+    fn launch(&self, settings: &Settings, watch: &mut Stopwatch) -> Result<Header, Error> {
+        match &self.kernels {
+            Compiled::Wavefront(kernels) => kernels.launch(self.gpu, &self.state, settings, watch),
+            Compiled::Megakernel(kernels) => kernels.launch(self.gpu, &self.state, settings, watch),
+        }
     }
 
     /// Bytes of the scene and of the paths under way.
@@ -114,14 +181,12 @@ impl<'g> WgpuRenderer<'g> {
                 settings.first_sample = first_sample;
                 settings.first = first;
                 settings.count = count;
-                let rays =
-                    self.wavefront
-                        .launch(self.gpu, &settings, options.max_depth, &mut watch)?;
-                counters.bounce_rays += u64::from(rays.bounce);
-                counters.shadow_rays += u64::from(rays.shadow);
+                let did = self.launch(&settings, &mut watch)?;
+                counters.bounce_rays += u64::from(did.bounce_rays);
+                counters.shadow_rays += u64::from(did.shadow_rays);
                 let part = range(first, count, stride);
                 let bytes = bytemuck::cast_slice_mut(&mut values[part]);
-                self.gpu.download(&self.wavefront.samples, bytes)?;
+                self.gpu.download(&self.state.samples, bytes)?;
             }
             let film_start = std::time::Instant::now();
             self.add_to(film, &values);

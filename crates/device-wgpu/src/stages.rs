@@ -83,7 +83,7 @@ impl Stopwatch {
     }
 
     /// Behind the pass.
-    pub(crate) fn resolve(&self, _gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(clock) = &self.clock {
             let range = 0..self.laps.len() as u32 + 1;
             encoder.resolve_query_set(&clock.queries, range, &clock.resolved, 0);

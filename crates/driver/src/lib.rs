@@ -3,6 +3,7 @@
 //! ```text
 //! Plan ─┬─ compile ─ cargo ─▶ library ─ cache ─▶ LoadedRenderer ─┬─ tiers ─▶ device
 //!       ├─ interpreted ──────────────────────────────────────────┤
+//!       ├─ gpu (with the feature wgpu)
 //!       └─ standalone ─ cargo ─▶ program                         └─ price (with and without each effect)
 //! ```
 //!
@@ -13,6 +14,8 @@ pub mod cache;
 pub mod cargo;
 pub mod compile;
 mod fingerprint;
+#[cfg(feature = "wgpu")]
+pub mod gpu;
 pub mod price;
 pub mod standalone;
 pub mod tiers;

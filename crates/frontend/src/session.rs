@@ -104,10 +104,20 @@ impl<'a> Session<'a> {
         if let Some(error) = failed {
             return Err(error);
         }
-        if film.samples() > 0 || outcome.is_ok() {
-            self.write(scene, &film, report.elapsed)?;
+        if let Err(error) = outcome {
+            let error = error.into();
+            // What there is stays, whatever comes of the rest.
+            return Err(match film.samples() {
+                0 => error,
+                samples => match self.write(scene, &film, report.elapsed) {
+                    Ok(()) => error.context(format!(
+                        "rendering ended early; the image has {samples} samples per pixel"
+                    )),
+                    Err(unwritten) => error.context(format!("{unwritten:#}; before that")),
+                },
+            });
         }
-        outcome.map_err(Into::into)?;
+        self.write(scene, &film, report.elapsed)?;
         let first_image = first_image.unwrap_or_else(|| self.start.elapsed());
         Ok(Rendered {
             film,

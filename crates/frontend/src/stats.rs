@@ -44,6 +44,88 @@ pub struct TierReport {
     pub break_even: Option<f64>,
 }
 
+/// What rendered.
+#[derive(Clone, Debug)]
+pub enum DeviceReport {
+    /// The processor.
+    Cpu,
+    /// A GPU.
+    Wgpu(WgpuReport),
+}
+
+/// What a GPU was, and how it did.
+#[derive(Clone, Debug)]
+pub struct WgpuReport {
+    /// The adapter: name, kind, interface, driver.
+    pub adapter: String,
+    /// How its kernels compute.
+    pub arithmetic: String,
+    /// What its answers are, beside the processor's.
+    pub answers: String,
+    /// Samples have the processor's bits.
+    pub is_exact: bool,
+    /// How work is divided into kernels.
+    pub mapping: String,
+    /// How long its kernels took to compile, beside rendering.
+    pub compile: Duration,
+    /// Samples a pixel that the processor had rendered when it took over; `None` if it did not.
+    pub from: Option<u32>,
+    /// Of the first samples: how many pixels have the processor's bits, of how many.
+    pub agreement: Option<(usize, usize)>,
+    /// Bytes of the scene and of the paths under way on the device.
+    pub bytes: u64,
+}
+
+impl DeviceReport {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Cpu => "cpu",
+            Self::Wgpu(_) => "wgpu",
+        }
+    }
+
+    fn json(&self) -> Option<Value> {
+        match self {
+            Self::Cpu => None,
+            Self::Wgpu(gpu) => Some(json!({
+                "adapter": gpu.adapter,
+                "arithmetic": gpu.arithmetic,
+                "answers": gpu.answers,
+                "exact": gpu.is_exact,
+                "mapping": gpu.mapping,
+                "compile_seconds": gpu.compile.as_secs_f64(),
+                "from_samples": gpu.from,
+                "pixels_equal": gpu.agreement.map(|(same, pixels)| json!([same, pixels])),
+                "memory_mib": mib(gpu.bytes as usize),
+            })),
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            Self::Cpu => String::new(),
+            Self::Wgpu(gpu) => {
+                let from = match gpu.from {
+                    Some(samples) => format!("from sample {samples} on"),
+                    None => "not ready before the end".to_owned(),
+                };
+                let agreement = gpu.agreement.map_or(String::new(), |(same, pixels)| {
+                    format!("; {same} of {pixels} first samples have the processor's bits")
+                });
+                format!(
+                    "{} {from}, {}\n{}: {}{agreement}\nkernels compiled in {:.2} s, {:.1} MiB on the device\n",
+                    gpu.adapter,
+                    gpu.mapping,
+                    gpu.arithmetic,
+                    gpu.answers,
+                    gpu.compile.as_secs_f64(),
+                    mib(gpu.bytes as usize),
+                )
+            }
+        }
+    }
+}
+
 /// Everything that is known at the end of a render.
 pub struct Statistics<'a> {
     /// The scene.
@@ -56,8 +138,8 @@ pub struct Statistics<'a> {
     pub total: Duration,
     /// Which renderers were at work.
     pub tiers: TierReport,
-    /// What rendered: `cpu` or `wgpu`.
-    pub device: &'static str,
+    /// What rendered.
+    pub device: DeviceReport,
     /// Threads of the processor.
     pub threads: usize,
     /// Paths shaded at once.
@@ -103,7 +185,8 @@ impl Statistics<'_> {
         let error = film.error();
         json!({
             "scene": self.scene.name,
-            "device": self.device,
+            "device": self.device.name(),
+            "gpu": self.device.json(),
             "tier": self.tiers.tier,
             "lanes": self.lanes,
             "threads": self.threads,
@@ -175,6 +258,7 @@ impl Statistics<'_> {
             mib(self.bvh_bytes),
             peak_memory().unwrap_or(f64::NAN),
         );
+        text.push_str(&self.device.text());
         for (name, seconds) in stages {
             text.push_str(&format!(
                 "{name:<12} {:5.1} %\n",

@@ -11,7 +11,7 @@ use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, TileRenderer}
 use residual_frontend::hierarchy_quality;
 use residual_frontend::options::{RenderArgs, Size};
 use residual_frontend::session::Session;
-use residual_frontend::stats::{Preparation, SceneSummary, Statistics, TierReport};
+use residual_frontend::stats::{DeviceReport, Preparation, SceneSummary, Statistics, TierReport};
 use residual_render::camera::set_aspect;
 use residual_render::scene_data::SceneData;
 
@@ -112,7 +112,7 @@ fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
     session.finish(&Statistics {
         scene: &summary,
         rendered: &rendered,
-        device: "cpu",
+        device: DeviceReport::Cpu,
         threads: device.threads(),
         preparation,
         total: session.start.elapsed(),

@@ -21,7 +21,7 @@ fn plan() {
         set_arguments(k + 2u, count);
         start += count;
     }
-    queues.shadow_rays += atomicLoad(&queues.shadows);
+    atomicAdd(&queues.shadow_rays, atomicLoad(&queues.shadows));
     atomicStore(&queues.shadows, 0u);
 }
 
@@ -31,7 +31,7 @@ fn turn() {
     let live = atomicLoad(&queues.next);
     queues.live = live;
     queues.side = 1u - queues.side;
-    queues.bounce_rays += live;
+    atomicAdd(&queues.bounce_rays, live);
     atomicStore(&queues.next, 0u);
     for (var k = 0u; k < QUEUES; k++) {
         atomicStore(&queues.counts[k], 0u);

@@ -49,8 +49,8 @@ struct Queues {
     next: atomic<u32>,
     shadows: atomic<u32>,
     // What has been traced.
-    bounce_rays: u32,
-    shadow_rays: u32,
+    bounce_rays: atomic<u32>,
+    shadow_rays: atomic<u32>,
     // Of each program; misses come last.
     counts: array<atomic<u32>, QUEUES>,
     cursors: array<atomic<u32>, QUEUES>,

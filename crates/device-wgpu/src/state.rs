@@ -1,0 +1,148 @@
+//! What kernels of every mapping share: the buffers of a scene, of the paths under way, and of their samples.
+
+use bytemuck::Zeroable;
+use residual_wgsl::Binding;
+use wgpu::{BindGroup, BufferUsages, PipelineLayout};
+
+use crate::bindings::Access::{Read, Uniform, Write};
+use crate::bindings::{group, layout, pipeline_layout};
+use crate::error::Error;
+use crate::gpu::Gpu;
+use crate::launch::{Settings, WORKGROUP};
+use crate::scene::Scene;
+
+/// Bytes of a path, a shadow ray and the entries of a path in the queues.
+const PATH: u64 = 64;
+const SHADOW_RAY: u64 = 48;
+const ENTRIES: u64 = 12;
+/// Words of the queues before what there is of each program, and words of each program.
+const HEADER: usize = 6;
+const OF_QUEUE: usize = 3;
+
+/// Bytes that a path takes, with so many numbers a sample.
+pub(crate) fn bytes_per_path(stride: usize) -> u64 {
+    PATH + SHADOW_RAY + ENTRIES + 4 * stride as u64
+}
+
+/// Buffers, bound.
+pub(crate) struct State {
+    /// Group 0 and 1 of the kernels that work on paths.
+    pub(crate) scene: BindGroup,
+    pub(crate) paths: BindGroup,
+    pub(crate) work: PipelineLayout,
+    /// Group 0 of those that schedule.
+    pub(crate) control: BindGroup,
+    pub(crate) between: PipelineLayout,
+    /// Workgroups of indirect dispatches.
+    pub(crate) arguments: wgpu::Buffer,
+    /// `samples[slot][channel]`.
+    pub(crate) samples: wgpu::Buffer,
+    settings: wgpu::Buffer,
+    queues: wgpu::Buffer,
+    queue_count: usize,
+}
+
+/// The first words of the queues: the kernels' `Queues`.
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Header {
+    live: u32,
+    side: u32,
+    next: u32,
+    shadows: u32,
+    pub(crate) bounce_rays: u32,
+    pub(crate) shadow_rays: u32,
+}
+
+impl Header {
+    /// No path is left, and no shadow ray.
+    pub(crate) fn is_done(&self) -> bool {
+        self.live == 0 && self.shadows == 0
+    }
+}
+
+const _: () = assert!(size_of::<Header>() == 4 * HEADER);
+
+impl State {
+    /// Buffers for this many paths under way, and as many of them in queues.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        scene: &Scene,
+        queue_count: usize,
+        slots: u32,
+        queued: u32,
+        stride: usize,
+    ) -> Self {
+        let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+        let [slots, queued] = [slots, queued].map(u64::from);
+        let paths = gpu.buffer("paths", queued * PATH, storage);
+        let shadow_rays = gpu.buffer("shadow rays", queued * SHADOW_RAY, storage);
+        let header = 4 * (HEADER + OF_QUEUE * queue_count) as u64;
+        let queues = gpu.buffer("queues", header + queued * ENTRIES, storage);
+        let samples = gpu.buffer("samples", slots * 4 * stride as u64, storage);
+        let size = size_of::<Settings>() as u64;
+        let settings = gpu.buffer("settings", size, BufferUsages::UNIFORM);
+        let arguments = gpu.buffer(
+            "arguments",
+            12 * (2 + queue_count as u64),
+            BufferUsages::STORAGE | BufferUsages::INDIRECT,
+        );
+
+        let scene_layout = layout(gpu, &[Read, Read, Read, Uniform]);
+        let paths_layout = layout(gpu, &[Read, Write, Write, Write, Write, Uniform]);
+        let control_layout = layout(gpu, &[Write, Write, Uniform]);
+        let [geometry, texels, tables] = &scene.bindings;
+        const { assert!(Binding::BASES == 3) };
+        let of_scene = [geometry, texels, tables, &scene.bases];
+        let of_paths = [
+            &scene.tree,
+            &paths,
+            &shadow_rays,
+            &queues,
+            &samples,
+            &settings,
+        ];
+        Self {
+            scene: group(gpu, &scene_layout, &of_scene),
+            paths: group(gpu, &paths_layout, &of_paths),
+            work: pipeline_layout(gpu, &[&scene_layout, &paths_layout]),
+            control: group(gpu, &control_layout, &[&queues, &arguments, &settings]),
+            between: pipeline_layout(gpu, &[&control_layout]),
+            arguments,
+            samples,
+            settings,
+            queues,
+            queue_count,
+        }
+    }
+
+    /// Sets everything up for a launch; returns its workgroups.
+    pub(crate) fn begin(&self, gpu: &Gpu, settings: &Settings) -> u32 {
+        let write = |buffer, bytes: &[u8]| gpu.queue.write_buffer(buffer, 0, bytes);
+        write(&self.settings, bytemuck::bytes_of(settings));
+        let mut words = vec![0; HEADER + OF_QUEUE * self.queue_count];
+        words[0] = settings.count;
+        write(&self.queues, bytemuck::cast_slice(&words));
+        let groups = settings.count.div_ceil(WORKGROUP);
+        let arguments = [groups, 1, 1, groups, 1, 1];
+        write(&self.arguments, bytemuck::cast_slice(&arguments));
+        groups
+    }
+
+    /// Binds what kernels on paths need.
+    pub(crate) fn bind(&self, pass: &mut wgpu::ComputePass<'_>, kernel: &wgpu::ComputePipeline) {
+        pass.set_pipeline(kernel);
+        pass.set_bind_group(0, &self.scene, &[]);
+        pass.set_bind_group(1, &self.paths, &[]);
+    }
+
+    /// The state of the queues.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub(crate) fn header(&self, gpu: &Gpu) -> Result<Header, Error> {
+        let mut header = Header::default();
+        gpu.download(&self.queues, bytemuck::bytes_of_mut(&mut header))?;
+        Ok(header)
+    }
+}

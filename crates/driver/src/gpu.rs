@@ -1,0 +1,241 @@
+//! A render on a GPU: on the processor until the kernels are compiled, then on the device, once its first samples have been
+//! compared with the processor's.
+
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use anyhow::{Result, bail};
+use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
+use residual_device_wgpu::{Dialect, Gpu, Mapping, Probe, WgpuRenderer};
+use residual_frontend::stats::WgpuReport;
+use residual_render::film::{Film, TILE_SIZE};
+use residual_render::passes::{Counters, Pass, RenderOptions};
+use residual_scenegen::plan::Plan;
+
+/// Where bits may differ: the part of the pixels that may be off by more than [`FAR`], for paths that take another turn.
+const MOST_FAR: f64 = 0.1;
+/// Relative difference of a pixel that is more than roundings.
+const FAR: f32 = 0.1;
+
+/// A GPU that renders a plan.
+pub struct GpuDriver<'a> {
+    gpu: &'a Gpu,
+    probe: Probe,
+    plan: &'a Plan,
+    bvh: &'a AnyBvh,
+    mapping: Mapping,
+    compiled: OnceLock<(
+        Result<WgpuRenderer<'a>, residual_device_wgpu::Error>,
+        Duration,
+    )>,
+}
+
+impl<'a> GpuDriver<'a> {
+    /// Nothing is compiled yet. The hierarchy is four wide.
+    pub fn new(
+        gpu: &'a Gpu,
+        probe: Probe,
+        plan: &'a Plan,
+        bvh: &'a AnyBvh,
+        mapping: Mapping,
+    ) -> Self {
+        Self {
+            gpu,
+            probe,
+            plan,
+            bvh,
+            mapping,
+            compiled: OnceLock::new(),
+        }
+    }
+
+    /// Compiles the kernels for images of this size. Runs beside everything else.
+    ///
+    /// # Panics
+    /// If the hierarchy is not four wide.
+    pub fn compile(&self, size: [u32; 2]) {
+        self.compiled.get_or_init(|| {
+            let start = Instant::now();
+            let bvh = self.bvh.four_wide().expect("a hierarchy of four children");
+            let Plan {
+                structure, data, ..
+            } = self.plan;
+            let dialect = self.probe.dialect;
+            let renderer =
+                WgpuRenderer::new(self.gpu, dialect, self.mapping, structure, data, bvh, size);
+            let renderer = renderer.and_then(|renderer| {
+                renderer.warm_up()?;
+                Ok(renderer)
+            });
+            (renderer, start.elapsed())
+        });
+    }
+}
+
+/// The passes of one render.
+pub struct GpuPasses<'a> {
+    driver: &'a GpuDriver<'a>,
+    cpu: &'a CpuDevice,
+    interpreter: Interpreter,
+    view: SceneView<'a>,
+    options: &'a RenderOptions,
+    /// The processor's first sample, and how the device's agrees with it.
+    first: Option<Film>,
+    agreement: Option<Agreement>,
+    /// Samples a pixel when the device took over.
+    from: Option<u32>,
+}
+
+/// How the samples of two devices agree.
+#[derive(Clone, Copy, Debug)]
+struct Agreement {
+    /// Pixels of the same bits, those far off, and all.
+    same: usize,
+    far: usize,
+    pixels: usize,
+}
+
+impl Agreement {
+    fn of(a: &Film, b: &Film) -> Self {
+        let (a, b) = (a.image(), b.image());
+        let is_far = |(a, b): &(&[f32; 3], &[f32; 3])| {
+            a.iter()
+                .zip(*b)
+                .any(|(x, y)| (x - y).abs() > FAR * x.max(*y))
+        };
+        Self {
+            same: a.iter().zip(&b).filter(|(a, b)| a == b).count(),
+            far: a.iter().zip(&b).filter(is_far).count(),
+            pixels: a.len(),
+        }
+    }
+}
+
+impl<'a> GpuPasses<'a> {
+    /// Passes into a film of these options.
+    pub fn new(
+        driver: &'a GpuDriver<'a>,
+        cpu: &'a CpuDevice,
+        lanes: LaneCount,
+        options: &'a RenderOptions,
+    ) -> Self {
+        Self {
+            driver,
+            cpu,
+            interpreter: Interpreter::new(driver.plan.structure.clone(), lanes),
+            view: SceneView {
+                buffers: driver.plan.data.buffers(),
+                traversal: driver.bvh,
+            },
+            options,
+            first: None,
+            agreement: None,
+            from: None,
+        }
+    }
+
+    /// Adds a pass: on the device as soon as it can, on the processor before.
+    ///
+    /// # Errors
+    /// If the device fails, or its samples are not the processor's.
+    pub fn pass(&mut self, film: &mut Film, pass: Pass) -> Result<Counters> {
+        let is_mixed = self.driver.probe.is_exact();
+        if !is_mixed {
+            // Samples of two kinds would make an image that depends on the time that compilers take.
+            self.driver.compile(self.options.size);
+        }
+        let Some((compiled, _)) = self.driver.compiled.get() else {
+            let counters = self.on_cpu(film, pass);
+            if pass == FIRST {
+                self.first = Some(film.clone());
+            }
+            return Ok(counters);
+        };
+        let renderer = match compiled {
+            Ok(renderer) => renderer,
+            Err(error) => bail!("{error}"),
+        };
+        if self.agreement.is_none() {
+            self.compare(renderer)?;
+        }
+        self.from.get_or_insert(pass.first);
+        Ok(renderer.pass(film, pass, &self.options.tracer())?)
+    }
+
+    fn on_cpu(&self, film: &mut Film, pass: Pass) -> Counters {
+        let Self {
+            cpu,
+            interpreter,
+            view,
+            options,
+            ..
+        } = self;
+        cpu.pass(interpreter, view, options, film, pass)
+    }
+
+    /// The first sample of each pixel, by both devices.
+    fn compare(&mut self, renderer: &WgpuRenderer<'_>) -> Result<()> {
+        let layers = self.driver.plan.structure.layers;
+        let [width, height] = self.options.size;
+        let film = || Film::new(width, height, TILE_SIZE, layers);
+        let ours = self.first.take().unwrap_or_else(|| {
+            let mut film = film();
+            self.on_cpu(&mut film, FIRST);
+            film
+        });
+        let mut theirs = film();
+        renderer.pass(&mut theirs, FIRST, &self.options.tracer())?;
+        let agreement = Agreement::of(&ours, &theirs);
+        let Agreement { same, far, pixels } = agreement;
+        let adapter = &self.driver.gpu.adapter.name;
+        // Traversal of another hierarchy visits other nodes.
+        let is_comparable = !renderer.shows_traversal();
+        if is_comparable && far as f64 > MOST_FAR * pixels as f64 {
+            bail!(
+                "{adapter}: {far} of {pixels} pixels are far from the processor's in the first samples; \
+                 its driver may be at fault; render with --device cpu"
+            );
+        }
+        if is_comparable && self.driver.probe.is_exact() && same < pixels {
+            eprintln!(
+                "warning: {adapter}: {} of {pixels} pixels are not the processor's bit for bit",
+                pixels - same
+            );
+        }
+        self.agreement = Some(agreement);
+        Ok(())
+    }
+
+    /// What statistics say of the device.
+    pub fn report(&self) -> WgpuReport {
+        let compiled = self.driver.compiled.get();
+        let renderer = compiled.and_then(|(renderer, _)| renderer.as_ref().ok());
+        let Probe {
+            dialect, answers, ..
+        } = &self.driver.probe;
+        WgpuReport {
+            adapter: self.driver.gpu.adapter.to_string(),
+            arithmetic: arithmetic(dialect),
+            answers: answers.to_string(),
+            is_exact: self.driver.probe.is_exact(),
+            mapping: self.driver.mapping.to_string(),
+            compile: compiled.map_or(Duration::ZERO, |(_, time)| *time),
+            from: self.from,
+            agreement: self.agreement.map(|a| (a.same, a.pixels)),
+            bytes: renderer.map_or(0, WgpuRenderer::memory_bytes),
+        }
+    }
+}
+
+/// The first sample of each pixel, which is also the first pass.
+const FIRST: Pass = Pass { first: 0, count: 1 };
+
+/// How kernels compute, in words.
+pub fn arithmetic(dialect: &Dialect) -> String {
+    let Dialect { mode, arithmetic } = dialect;
+    format!(
+        "{mode:?}; fma {:?}, division {:?}, square root {:?}",
+        arithmetic.fma, arithmetic.division, arithmetic.square_root
+    )
+    .to_lowercase()
+}

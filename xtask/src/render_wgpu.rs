@@ -1,0 +1,109 @@
+//! `cargo xtask render --device wgpu`, and `cargo xtask adapters`.
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail, ensure};
+use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount};
+use residual_device_wgpu::{Gpu, Mapping, list_adapters};
+use residual_driver::gpu::{GpuDriver, GpuPasses, arithmetic};
+use residual_frontend::hierarchy_quality;
+use residual_frontend::session::Session;
+use residual_frontend::stats::{DeviceReport, Preparation, Statistics, TierReport};
+
+use crate::args::{MappingArg, RenderArgs, TierArg};
+use crate::scene;
+
+/// Renders on a GPU.
+pub(crate) fn run(args: &RenderArgs) -> Result<()> {
+    ensure!(
+        args.tier != TierArg::Interpreted,
+        "--tier interpreted: a GPU runs what is made for the scene; render with --device cpu"
+    );
+    let session = Session::new(
+        &args.render,
+        args.scene.scene.file_stem().unwrap_or_default(),
+        args.scene.layers(),
+    )?;
+    let gpu = Gpu::open(args.adapter.as_deref())?;
+    let probe = gpu.probe()?;
+    if !probe.is_exact() && !args.render.quiet {
+        eprintln!(
+            "note: {}: images may differ from the processor's in their last bits ({})",
+            gpu.adapter.name, probe.answers
+        );
+    }
+    let (plan, load) = scene::load(&args.scene)?;
+    let lanes = args.lanes.unwrap_or_else(LaneCount::native);
+    let cpu = CpuDevice::new(args.render.threads).context("starting threads")?;
+    let options = args
+        .render
+        .render_options(args.scene.size.0, plan.default_reach());
+    let bvh_start = Instant::now();
+    let quality = hierarchy_quality(plan.data.triangle_count());
+    let bvh = AnyBvh::build(&plan.data, LaneCount::Four, quality);
+    let bvh_time = bvh_start.elapsed();
+    let mapping = match args.mapping {
+        MappingArg::Wavefront => Mapping::Wavefront,
+        MappingArg::Megakernel => Mapping::Megakernel,
+    };
+    let driver = GpuDriver::new(&gpu, probe, &plan, &bvh, mapping);
+    let (rendered, report) = std::thread::scope(|scope| {
+        let compilation = scope.spawn(|| driver.compile(options.size));
+        if args.tier == TierArg::Specialized && compilation.join().is_err() {
+            bail!("compiling kernels ended early");
+        }
+        let mut passes = GpuPasses::new(&driver, &cpu, lanes, &options);
+        let rendered = session.render(
+            &plan.name,
+            &options,
+            plan.structure.layers,
+            |film, pass| passes.pass(film, pass),
+            |_| (),
+        )?;
+        Ok((rendered, passes.report()))
+    })?;
+    let statistics = Statistics {
+        scene: &scene::summary(&plan),
+        preparation: Preparation {
+            load,
+            bvh: bvh_time,
+            compile: Duration::ZERO,
+        },
+        total: session.start.elapsed(),
+        tiers: TierReport {
+            tier: match report.from {
+                Some(_) => "specialized",
+                None => "interpreted",
+            },
+            compiled_from: report.from,
+            break_even: None,
+        },
+        device: DeviceReport::Wgpu(report),
+        threads: cpu.threads(),
+        lanes: lanes.count(),
+        bvh_bytes: bvh.memory_bytes(),
+        rendered: &rendered,
+    };
+    session.finish(&statistics);
+    Ok(())
+}
+
+/// Lists the adapters, and what each makes of arithmetic.
+pub(crate) fn adapters() -> Result<()> {
+    let adapters = list_adapters();
+    if adapters.is_empty() {
+        bail!(residual_device_wgpu::Error::NoAdapter);
+    }
+    for adapter in adapters {
+        println!("{adapter}");
+        let probe = Gpu::open(Some(&adapter.name)).and_then(|gpu| gpu.probe());
+        match probe {
+            Ok(probe) => {
+                println!("    plain WGSL: {}", probe.plain);
+                println!("    {}: {}", arithmetic(&probe.dialect), probe.answers);
+            }
+            Err(error) => println!("    {error}"),
+        }
+    }
+    Ok(())
+}
