@@ -13,12 +13,14 @@
 //!
 //! All `f32` domains give the same bits for the same operations, whatever the lane count: each operation is
 //! one correctly rounded IEEE 754 operation per lane. [`Domain::fma`] is fused where the instruction set fuses,
-//! and everywhere or nowhere on one instruction set.
+//! and everywhere or nowhere on one instruction set. [`operations`] says it of each operation, and has the cases that hold
+//! every domain to it.
 //!
 //! Formulas obey three rules so that they can be recorded as well as run: no Rust `if` on values (use
 //! [`Domain::branch`] or a select), no loops whose length depends on values, no state.
 
 mod lanes;
+pub mod operations;
 mod single;
 pub mod tape;
 

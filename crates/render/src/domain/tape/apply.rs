@@ -1,49 +1,54 @@
-//! Operations on bits, by the scalar domain: what folding and evaluation have in common.
+//! Operations by their name: the inverse of recording. Folding and evaluation do it over the scalar domain.
 
 use super::node::Op;
 use crate::domain::{Buffers, Domain, Scalar, Uint};
 
+impl Op {
+    /// The domain's operation. Operands and result are bits, truth values 0 and 1; a select chooses between words.
+    pub fn apply<D: Domain>(self, d: D, [i, j, k]: [D::U; 3]) -> D::U {
+        let [a, b, c] = [i, j, k].map(|bits| d.from_bits(bits));
+        let [p, q] = [i, j].map(|bit| d.lt_u(d.uint(0), bit));
+        let real = |value| d.to_bits(value);
+        let truth = |value| d.select_u(value, d.uint(1), d.uint(0));
+        match self {
+            Self::Add => real(a + b),
+            Self::Sub => real(a - b),
+            Self::Mul => real(a * b),
+            Self::Div => real(a / b),
+            Self::Neg => real(-a),
+            Self::Sqrt => real(d.sqrt(a)),
+            Self::Min => real(d.min(a, b)),
+            Self::Max => real(d.max(a, b)),
+            Self::Abs => real(d.abs(a)),
+            Self::Floor => real(d.floor(a)),
+            Self::Fma => real(d.fma(a, b, c)),
+            Self::Copysign => real(d.copysign(a, b)),
+            Self::Lt => truth(d.lt(a, b)),
+            Self::Le => truth(d.le(a, b)),
+            Self::Eq => truth(d.eq(a, b)),
+            Self::AddU => i + j,
+            Self::SubU => i - j,
+            Self::MulU => i * j,
+            Self::AndU => i & j,
+            Self::OrU => i | j,
+            Self::XorU => i ^ j,
+            Self::ShlU(by) => i << by,
+            Self::ShrU(by) => i >> by,
+            Self::ReverseBits => d.reverse_bits(i),
+            Self::EqU => truth(d.eq_u(i, j)),
+            Self::LtU => truth(d.lt_u(i, j)),
+            Self::ToUint => d.to_uint(a),
+            Self::ToReal => real(d.to_real(i)),
+            Self::ToBits | Self::FromBits => real(a),
+            Self::And => truth(p & q),
+            Self::Or => truth(p | q),
+            Self::Not => truth(!p),
+            Self::Select => d.select_u(p, j, k),
+        }
+    }
+}
+
 /// The bits of an operation's result.
 pub(super) fn apply(op: Op, operands: [u32; 3]) -> u32 {
-    let d = Scalar::new(&Buffers::EMPTY);
-    let [a, b, c] = operands.map(f32::from_bits);
-    let [i, j, k] = operands.map(Uint);
-    let [p, q, _] = operands.map(|bits| bits != 0);
-    let real = f32::to_bits;
-    match op {
-        Op::Add => real(a + b),
-        Op::Sub => real(a - b),
-        Op::Mul => real(a * b),
-        Op::Div => real(a / b),
-        Op::Neg => real(-a),
-        Op::Sqrt => real(d.sqrt(a)),
-        Op::Min => real(d.min(a, b)),
-        Op::Max => real(d.max(a, b)),
-        Op::Abs => real(d.abs(a)),
-        Op::Floor => real(d.floor(a)),
-        Op::Fma => real(d.fma(a, b, c)),
-        Op::Copysign => real(d.copysign(a, b)),
-        Op::Lt => u32::from(d.lt(a, b)),
-        Op::Le => u32::from(d.le(a, b)),
-        Op::Eq => u32::from(d.eq(a, b)),
-        Op::AddU => (i + j).0,
-        Op::SubU => (i - j).0,
-        Op::MulU => (i * j).0,
-        Op::AndU => (i & j).0,
-        Op::OrU => (i | j).0,
-        Op::XorU => (i ^ j).0,
-        Op::ShlU(by) => (i << by).0,
-        Op::ShrU(by) => (i >> by).0,
-        Op::ReverseBits => d.reverse_bits(i).0,
-        Op::EqU => u32::from(d.eq_u(i, j)),
-        Op::LtU => u32::from(d.lt_u(i, j)),
-        Op::ToUint => d.to_uint(a).0,
-        Op::ToReal => real(d.to_real(i)),
-        // Bits are bits.
-        Op::ToBits | Op::FromBits => i.0,
-        Op::And => u32::from(p & q),
-        Op::Or => u32::from(p | q),
-        Op::Not => u32::from(!p),
-        Op::Select => d.select_u(p, j, k).0,
-    }
+    op.apply(Scalar::new(&Buffers::EMPTY), operands.map(Uint)).0
 }

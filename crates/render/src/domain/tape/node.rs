@@ -72,7 +72,8 @@ pub enum Node {
     },
 }
 
-/// An operation. Those without a suffix are on real numbers.
+/// An operation. Those without a suffix are on real numbers. Each is in
+/// [`Operation::ALL`](crate::domain::operations::Operation::ALL), too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(missing_docs, reason = "the names are those of `Domain`'s operations")]
 pub enum Op {
@@ -154,7 +155,7 @@ impl Op {
     }
 
     /// What it yields; `None` is the kind of its second operand.
-    pub(super) fn kind(self) -> Option<Kind> {
+    pub fn kind(self) -> Option<Kind> {
         match self {
             Self::Add
             | Self::Sub
