@@ -21,8 +21,16 @@ fn gpu_film(gpu: &Gpu, plan: &Plan, look: &Look, dialect: Dialect, mapping: Mapp
         BuildQuality::Fast,
     );
     let t = std::time::Instant::now();
-    let renderer = WgpuRenderer::new(gpu, dialect, mapping, &plan.structure, &plan.data, &bvh, look.size)
-        .unwrap_or_else(|e| panic!("{e}"));
+    let renderer = WgpuRenderer::new(
+        gpu,
+        dialect,
+        mapping,
+        &plan.structure,
+        &plan.data,
+        &bvh,
+        look.size,
+    )
+    .unwrap_or_else(|e| panic!("{e}"));
     println!("compiled {:?}", t.elapsed());
     let mut film = Film::new(look.size[0], look.size[1], 64, plan.structure.layers);
     let options = TracerOptions {
@@ -59,6 +67,11 @@ fn first() {
         "plain: {}\nchosen: {:?}: {}",
         probe.plain, probe.dialect, probe.answers
     );
+    let t = std::time::Instant::now();
+    let all = gpu.ask(&residual_device_wgpu::Question::all(), probe.dialect).unwrap_or_else(|e| panic!("{e}"));
+    println!("all in {:?}: {all}", t.elapsed());
+    let all = gpu.ask(&residual_device_wgpu::Question::all(), Dialect { mode: Mode::Exact, arithmetic: Arithmetic::default() }).unwrap_or_else(|e| panic!("{e}"));
+    println!("exact, all native: {all}");
     let Some(scenes) = residual_tests::scenes() else {
         return;
     };

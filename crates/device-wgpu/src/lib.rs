@@ -23,6 +23,6 @@ mod wavefront;
 pub use error::Error;
 pub use gpu::{AdapterDescription, Gpu, list_adapters};
 pub use kernels::{Kernels, Traits};
-pub use probe::{Answers, Probe, Question};
+pub use probe::{Answers, Probe, Question, Tally};
 pub use renderer::{Mapping, WgpuRenderer};
 pub use shader::{Dialect, Mode};

@@ -1,12 +1,13 @@
 //! What an adapter makes of arithmetic, measured when it is opened.
 //!
-//! No driver says what it contracts, reassociates or rounds, so each is asked for its answers to expressions that reveal
-//! it, and the answers are compared with the processor's. The expressions are recorded and printed like everything else.
+//! No driver says what it contracts, reassociates or rounds, so each is asked for its answers to the suite that holds every
+//! domain to its contract. The questions are recorded and printed like everything else.
 
 use std::fmt;
 
-use residual_render::domain::tape::{Outputs, Record, Tape};
-use residual_render::domain::{Buffers, Domain, Scalar, Uint};
+use residual_render::domain::Domain as _;
+use residual_render::domain::operations::{Answer, Expression, Operation};
+use residual_render::domain::tape::{Op, Outputs, Record, Tape};
 use residual_wgsl::{Arithmetic, Division, Fma, Module, Recorded, SquareRoot};
 use wgpu::{BufferUsages, Features};
 
@@ -15,119 +16,127 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::shader::{Dialect, Mode, pipeline};
 
-/// What is asked, each a function of three numbers.
-const QUESTIONS: [Question; 11] = [
-    Question::TwoSum,
-    Question::Difference,
-    Question::Factoring,
-    Question::Order,
-    Question::Fused,
-    Question::Quotient,
-    Question::Root,
-    Question::Least,
-    Question::Denormal,
-    Question::Floor,
-    Question::Conversion,
-];
-
-/// An expression whose value reveals a liberty that compilers and drivers take.
+/// One operation, or a few that reveal a liberty which compilers and drivers take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// What a sum loses by rounding: 0 where sums are reassociated.
-    TwoSum,
-    /// a·b − c, which contraction rounds once.
-    Difference,
-    /// a·b + a·c, which some make a·(b + c).
-    Factoring,
-    /// Whether a·b ≥ b·c, by rounded products.
-    Order,
-    /// A fused multiply-add.
-    Fused,
-    /// a ÷ b.
-    Quotient,
-    /// √|a|.
-    Root,
-    /// The smaller of two numbers, the second where either is NaN.
-    Least,
-    /// The product with a power of two that makes it denormal.
-    Denormal,
-    /// ⌊a⌋.
-    Floor,
-    /// The bits of `a` as an integer, made a number.
-    Conversion,
+    /// One operation.
+    Operation(Operation),
+    /// A formula.
+    Expression(Expression),
+}
+
+impl fmt::Display for Question {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Operation(operation) => write!(f, "{:?}", operation.op),
+            Self::Expression(expression) => write!(f, "{expression:?}"),
+        }
+    }
 }
 
 impl Question {
-    /// Its name.
-    pub const fn name(self) -> &'static str {
+    /// Everything: each operation and each expression of the suite.
+    pub fn all() -> Vec<Self> {
+        let operations = Operation::ALL.into_iter().map(Self::Operation);
+        let expressions = Expression::ALL.into_iter().map(Self::Expression);
+        operations.chain(expressions).collect()
+    }
+
+    /// What has to be known before kernels are made: rounding, fusion, denormals, NaN, and liberties.
+    fn of_a_start() -> Vec<Self> {
+        let is_asked = |operation: &Operation| {
+            let ops = [
+                Op::Add,
+                Op::Mul,
+                Op::Div,
+                Op::Sqrt,
+                Op::Fma,
+                Op::Min,
+                Op::Lt,
+            ];
+            ops.contains(&operation.op)
+        };
+        let operations = Operation::ALL.into_iter().filter(is_asked);
+        let expressions = Expression::ALL.into_iter().map(Self::Expression);
+        operations.map(Self::Operation).chain(expressions).collect()
+    }
+
+    fn operands(self) -> Vec<[u32; 3]> {
         match self {
-            Self::TwoSum => "two-sum",
-            Self::Difference => "a·b − c",
-            Self::Factoring => "a·b + a·c",
-            Self::Order => "a·b ≥ b·c",
-            Self::Fused => "fma",
-            Self::Quotient => "division",
-            Self::Root => "square root",
-            Self::Least => "min with NaN",
-            Self::Denormal => "denormals",
-            Self::Floor => "floor",
-            Self::Conversion => "conversion",
+            Self::Operation(operation) => operation.operands(),
+            Self::Expression(_) => Expression::operands(),
         }
     }
 
-    fn answer<D: Domain>(self, d: D, [a, b, c]: [D::F; 3]) -> D::F {
+    fn answer(self, operands: [u32; 3]) -> Answer {
         match self {
-            Self::TwoSum => {
-                let sum = a + b;
-                let rest = sum - a;
-                (a - (sum - rest)) + (b - rest)
+            Self::Operation(operation) => operation.answer(operands),
+            Self::Expression(expression) => expression.answer(operands),
+        }
+    }
+
+    /// The question as a function of three words.
+    fn recorded(self, name: String) -> Recorded {
+        let tape = Tape::new();
+        let d = Record::new(&tape);
+        let words = ["a", "b", "c"].map(|name| tape.word(name));
+        let answer = match self {
+            Self::Operation(operation) => operation.evaluate(d, words),
+            Self::Expression(expression) => {
+                expression.evaluate(d, words.map(|word| d.from_bits(word)))
             }
-            Self::Difference => a * b - c,
-            Self::Factoring => a * b + a * c,
-            Self::Order => d.select(d.le(b * c, a * b), d.lit(1.0), d.lit(0.0)),
-            Self::Fused => d.fma(a, b, c),
-            Self::Quotient => a / b,
-            Self::Root => d.sqrt(d.abs(a)),
-            Self::Least => d.min(a, b),
-            Self::Denormal => a * d.lit(2_f64.powi(-126)),
-            Self::Floor => d.floor(a),
-            Self::Conversion => d.to_real(d.to_bits(a)),
+        };
+        Recorded {
+            function: tape.function(name, Outputs::new().word("answer", answer)),
+            result: "",
+            comment: self.to_string(),
         }
     }
 }
 
-/// How many of the answers differ from the processor's, by question.
+/// How many answers are not what the domain's contract says, by question.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answers(Vec<Tally>);
+
+/// The answers to one question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Answers {
-    wrong: [u32; QUESTIONS.len()],
-    /// Of how many.
-    pub asked: u32,
+pub struct Tally {
+    /// What was asked.
+    pub question: Question,
+    /// Wrong answers.
+    pub wrong: usize,
+    /// All answers.
+    pub asked: usize,
 }
 
 impl Answers {
-    /// The questions with how many answers are wrong.
-    pub fn iter(&self) -> impl Iterator<Item = (Question, u32)> {
-        QUESTIONS.into_iter().zip(self.wrong)
+    /// Question by question.
+    pub fn tallies(&self) -> &[Tally] {
+        &self.0
     }
 
-    fn wrong(&self, question: Question) -> u32 {
-        let found = self.iter().find(|(asked, _)| *asked == question);
-        found.expect("every question is asked").1
+    /// No answer to a question about this operation on numbers is wrong.
+    fn has_right(&self, op: Op) -> bool {
+        let of = |tally: &&Tally| match tally.question {
+            Question::Operation(operation) => operation.op == op,
+            Question::Expression(_) => false,
+        };
+        self.0.iter().filter(of).all(|tally| tally.wrong == 0)
     }
 
-    /// Every answer has the processor's bits.
+    /// Every answer is right.
     pub fn are_exact(&self) -> bool {
-        self.wrong.iter().all(|&wrong| wrong == 0)
+        self.0.iter().all(|tally| tally.wrong == 0)
     }
 }
 
 impl fmt::Display for Answers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let wrong = self.iter().filter(|(_, wrong)| *wrong > 0);
+        let wrong = self.0.iter().filter(|tally| tally.wrong > 0);
         let wrong: Vec<String> = wrong
-            .map(|(question, wrong)| {
-                let part = 100.0 * f64::from(wrong) / f64::from(self.asked);
-                format!("{} in {part:.2} %", question.name())
+            .map(|tally| {
+                let part = 100.0 * tally.wrong as f64 / tally.asked as f64;
+                format!("{} in {part:.2} %", tally.question)
             })
             .collect();
         match wrong.is_empty() {
@@ -138,7 +147,7 @@ impl fmt::Display for Answers {
 }
 
 /// The dialect that suits an adapter, and what its answers are in it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Probe {
     /// How kernels are to compute.
     pub dialect: Dialect,
@@ -162,49 +171,39 @@ impl Gpu {
     /// # Errors
     /// If the device fails.
     pub fn probe(&self) -> Result<Probe, Error> {
-        let native = Arithmetic::default();
-        let plain = self.ask(Dialect {
-            mode: Mode::Plain,
-            arithmetic: native,
-        })?;
+        let questions = Question::of_a_start();
+        let arithmetic = Arithmetic::default();
+        let mode = Mode::Plain;
+        let plain = self.ask(&questions, Dialect { mode, arithmetic })?;
         if !self.is_exact() {
-            let dialect = Dialect {
-                mode: Mode::Plain,
-                arithmetic: native,
-            };
             return Ok(Probe {
-                dialect,
-                answers: plain,
+                dialect: Dialect { mode, arithmetic },
+                answers: plain.clone(),
                 plain,
             });
         }
         let mode = Mode::Exact;
-        let first = self.ask(Dialect {
-            mode,
-            arithmetic: native,
-        })?;
+        let native = self.ask(&questions, Dialect { mode, arithmetic })?;
         let has_f64 = self.has(Features::SHADER_F64);
-        let is_right = |question| first.wrong(question) == 0;
         let arithmetic = Arithmetic {
-            fma: match (is_right(Question::Fused), FUSES, has_f64) {
-                (true, ..) => Fma::Native,
+            fma: match (native.has_right(Op::Fma), FUSES, has_f64) {
+                (true, ..) | (false, true, false) => Fma::Native,
                 (false, false, _) => Fma::Unfused,
                 (false, true, true) => Fma::Double,
-                (false, true, false) => Fma::Native,
             },
-            division: match is_right(Question::Quotient) || !has_f64 {
+            division: match native.has_right(Op::Div) || !has_f64 {
                 true => Division::Native,
                 false => Division::Double,
             },
-            square_root: match is_right(Question::Root) || !has_f64 {
+            square_root: match native.has_right(Op::Sqrt) || !has_f64 {
                 true => SquareRoot::Native,
                 false => SquareRoot::Double,
             },
         };
         let dialect = Dialect { mode, arithmetic };
-        let answers = match arithmetic == native {
-            true => first,
-            false => self.ask(dialect)?,
+        let answers = match arithmetic == Arithmetic::default() {
+            true => native,
+            false => self.ask(&questions, dialect)?,
         };
         Ok(Probe {
             dialect,
@@ -213,47 +212,51 @@ impl Gpu {
         })
     }
 
-    /// The answers to all questions.
-    fn ask(&self, dialect: Dialect) -> Result<Answers, Error> {
-        let inputs = inputs();
-        let count = inputs.len() as u32;
-        let words: Vec<u32> = inputs.iter().flatten().copied().collect();
-        let from = self.upload("inputs", &words);
+    /// The adapter's answers to some questions.
+    ///
+    /// # Errors
+    /// If the device fails, or refuses the kernel.
+    pub fn ask(&self, questions: &[Question], dialect: Dialect) -> Result<Answers, Error> {
+        let operands: Vec<_> = questions.iter().map(|q| q.operands()).collect();
+        let most = operands.iter().map(Vec::len).max().unwrap_or(0);
+        let rows = (most as u32).next_multiple_of(WORKGROUP);
+        let mut words = vec![0; 3 * rows as usize * questions.len()];
+        for (words, operands) in words.chunks_exact_mut(3 * rows as usize).zip(&operands) {
+            words[..3 * operands.len()].copy_from_slice(operands.as_flattened());
+        }
+        let from = self.upload("operands", &words);
         let to = self.buffer(
             "answers",
-            4 * u64::from(count) * QUESTIONS.len() as u64,
+            4 * u64::from(rows) * questions.len() as u64,
             BufferUsages::STORAGE | BufferUsages::COPY_SRC,
         );
         let bindings = layout(self, &[Access::Read, Access::Write]);
         let group = group(self, &bindings, &[&from, &to]);
         let layout = pipeline_layout(self, &[&bindings]);
-        let kernel = pipeline(
-            self,
-            dialect.mode,
-            &layout,
-            &text(dialect.arithmetic),
-            "ask",
-        )?;
+        let text = text(questions, rows, dialect.arithmetic);
+        let kernel = pipeline(self, dialect.mode, &layout, &text, "ask")?;
         let mut encoder = self.device.create_command_encoder(&Default::default());
         {
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(&kernel);
             pass.set_bind_group(0, &group, &[]);
-            pass.dispatch_workgroups(count.div_ceil(WORKGROUP), 1, 1);
+            pass.dispatch_workgroups(rows / WORKGROUP, questions.len() as u32, 1);
         }
         self.queue.submit([encoder.finish()]);
-        let mut answers = vec![0_u32; inputs.len() * QUESTIONS.len()];
+        let mut answers = vec![0_u32; rows as usize * questions.len()];
         self.download(&to, bytemuck::cast_slice_mut(&mut answers))?;
-        let mut wrong = [0; QUESTIONS.len()];
-        for (input, answers) in inputs.iter().zip(answers.chunks(QUESTIONS.len())) {
-            for ((question, answer), wrong) in QUESTIONS.iter().zip(answers).zip(&mut wrong) {
-                *wrong += u32::from(!is_right(*question, *input, *answer));
-            }
-        }
-        Ok(Answers {
-            wrong,
-            asked: count,
-        })
+        let of_questions = questions.iter().zip(&operands);
+        let tallies = of_questions.zip(answers.chunks_exact(rows as usize));
+        let tally = |((&question, operands), answers): ((&Question, &Vec<_>), &[u32])| Tally {
+            question,
+            wrong: operands
+                .iter()
+                .zip(answers)
+                .filter(|&(&operands, &answer)| !question.answer(operands).admits(answer))
+                .count(),
+            asked: operands.len(),
+        };
+        Ok(Answers(tallies.map(tally).collect()))
     }
 }
 
@@ -262,76 +265,35 @@ const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 /// Threads of a workgroup.
 const WORKGROUP: u32 = 64;
 
-/// Whether an answer is the processor's; NaN has no bits of its own.
-fn is_right(question: Question, input: [u32; 3], answer: u32) -> bool {
-    let d = Scalar::new(&Buffers::EMPTY);
-    let expected = question.answer(d, input.map(|bits| d.from_bits(Uint(bits))));
-    expected.to_bits() == answer || (expected.is_nan() && f32::from_bits(answer).is_nan())
-}
-
-/// Triples of numbers: half of neighbouring sizes, so that sums cancel, half of any bits, and special values among them.
-fn inputs() -> Vec<[u32; 3]> {
-    const COUNT: u64 = 1 << 16;
-    const SPECIAL: [f32; 8] = [
-        0.0,
-        -0.0,
-        1.0,
-        f32::MAX,
-        f32::MIN_POSITIVE,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        f32::NAN,
-    ];
-    // SplitMix64 (Steele, Lea, Flood 2014).
-    let mut state = 0_u64;
-    let mut next = || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 32) as u32
-    };
-    let mut number = |of: u64| {
-        let word = next();
-        match of % 32 {
-            0 if word % 4 == 0 => SPECIAL[word as usize / 4 % SPECIAL.len()].to_bits(),
-            1..16 => word & 0x807f_ffff | (120 + (word >> 23) % 16) << 23,
-            _ => word,
-        }
-    };
-    (0..COUNT)
-        .map(|index| [number(index), number(index), number(index)])
-        .collect()
-}
-
-fn text(arithmetic: Arithmetic) -> String {
+/// A kernel whose workgroups answer one question each, by their second number.
+fn text(questions: &[Question], rows: u32, arithmetic: Arithmetic) -> String {
     let mut module = Module::new(arithmetic);
-    let mut lines = String::new();
-    for (place, question) in QUESTIONS.into_iter().enumerate() {
-        let tape = Tape::new();
-        let numbers = ["a", "b", "c"].map(|name| tape.real(name));
-        let answer = question.answer(Record::new(&tape), numbers);
-        let name = format!("ask_{question:?}").to_lowercase();
-        lines += &format!(
-            "    answers[id.x * {}u + {place}u] = bitcast<u32>({name}(a, b, c));\n",
-            QUESTIONS.len()
+    let mut cases = String::new();
+    for (index, question) in questions.iter().enumerate() {
+        let name = format!("question_{index}");
+        cases += &format!(
+            "        case {index}u: {{\n            answer = {name}(a, b, c);\n        }}\n"
         );
-        module.add(&Recorded {
-            function: tape.function(name, Outputs::new().real("answer", answer)),
-            result: "",
-            comment: question.name().to_owned(),
-        });
+        module.add(&question.recorded(name));
     }
     module.add_text(&format!(
         "\
-@group(0) @binding(0) var<storage, read> numbers: array<u32>;
+@group(0) @binding(0) var<storage, read> operands: array<u32>;
 @group(0) @binding(1) var<storage, read_write> answers: array<u32>;
 
 @compute @workgroup_size({WORKGROUP})
 fn ask(@builtin(global_invocation_id) id: vec3u) {{
-    let a = bitcast<f32>(numbers[id.x * 3u]);
-    let b = bitcast<f32>(numbers[id.x * 3u + 1u]);
-    let c = bitcast<f32>(numbers[id.x * 3u + 2u]);
-{lines}}}
+    let place = id.y * {rows}u + id.x;
+    let a = operands[place * 3u];
+    let b = operands[place * 3u + 1u];
+    let c = operands[place * 3u + 2u];
+    var answer = 0u;
+    switch id.y {{
+{cases}        default: {{
+        }}
+    }}
+    answers[place] = answer;
+}}
 "
     ));
     module.finish()

@@ -11,7 +11,9 @@ pub enum Fma {
     /// By the built-in function.
     #[default]
     Native,
-    /// In `f64`, which adds a second rounding to about one result in 2²⁹.
+    /// In `f64`, whose sum is rounded once more only where that makes no difference: a sum that lies in the middle between
+    /// two `f32` goes to the side on which the exact sum is (Boldo, Melquiond, "Emulation of a FMA and correctly rounded
+    /// sums", 2008, with another way to see the middle).
     Double,
     /// As a product and a sum, each rounded: for processors that do not fuse.
     Unfused,
@@ -58,6 +60,24 @@ impl Arithmetic {
     }
 }
 
+/// The product is exact; `rest` is what the sum has lost (Knuth's two-sum).
+const FUSED_IN_DOUBLE: &str = "\
+fn fused(a: f32, b: f32, c: f32) -> f32 {
+    let product = f64(a) * f64(b);
+    let term = f64(c);
+    let sum = product + term;
+    let of_term = sum - product;
+    let rest = (product - (sum - of_term)) + (term - of_term);
+    let nearest = f32(sum);
+    let beyond = sum - f64(nearest);
+    // The neighbour that is as near, if there is one.
+    let other = f64(nearest) + 2.0lf * beyond;
+    let is_between = beyond != 0.0lf && f64(f32(other)) == other;
+    let is_other = is_between && rest != 0.0lf && (rest > 0.0lf) == (beyond > 0.0lf);
+    return select(nearest, f32(other), is_other);
+}
+";
+
 /// A function that printed text refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Helper {
@@ -92,6 +112,9 @@ impl Helper {
 
     /// What it computes, in a scene's arithmetic.
     pub(crate) fn definition(self, arithmetic: Arithmetic) -> String {
+        if self == Self::Fused && arithmetic.fma == Fma::Double {
+            return FUSED_IN_DOUBLE.to_owned();
+        }
         let (parameters, value) = match self {
             // The second where either is NaN.
             Self::Least => ("a: f32, b: f32", "select(b, a, a < b)"),
@@ -104,7 +127,7 @@ impl Helper {
                 "a: f32, b: f32, c: f32",
                 match arithmetic.fma {
                     Fma::Native => "fma(a, b, c)",
-                    Fma::Double => "f32(f64(a) * f64(b) + f64(c))",
+                    Fma::Double => unreachable!("it takes more than a line"),
                     Fma::Unfused => "a * b + c",
                 },
             ),
