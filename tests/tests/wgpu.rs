@@ -68,9 +68,19 @@ fn first() {
         probe.plain, probe.dialect, probe.answers
     );
     let t = std::time::Instant::now();
-    let all = gpu.ask(&residual_device_wgpu::Question::all(), probe.dialect).unwrap_or_else(|e| panic!("{e}"));
+    let all = gpu
+        .ask(&residual_device_wgpu::Question::all(), probe.dialect)
+        .unwrap_or_else(|e| panic!("{e}"));
     println!("all in {:?}: {all}", t.elapsed());
-    let all = gpu.ask(&residual_device_wgpu::Question::all(), Dialect { mode: Mode::Exact, arithmetic: Arithmetic::default() }).unwrap_or_else(|e| panic!("{e}"));
+    let all = gpu
+        .ask(
+            &residual_device_wgpu::Question::all(),
+            Dialect {
+                mode: Mode::Exact,
+                arithmetic: Arithmetic::default(),
+            },
+        )
+        .unwrap_or_else(|e| panic!("{e}"));
     println!("exact, all native: {all}");
     let Some(scenes) = residual_tests::scenes() else {
         return;

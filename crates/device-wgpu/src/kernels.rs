@@ -4,6 +4,7 @@ use residual_render::layer::{Layer, Layers};
 use residual_render::program::Structure;
 use residual_wgsl::{Arithmetic, Module, Recorded, SceneFunctions};
 
+use crate::launch::WORKGROUP;
 use crate::tree::STACK;
 
 const WAVEFRONT: &str = include_str!("wgsl/wavefront.wgsl");
@@ -13,6 +14,7 @@ const PATHS: &str = include_str!("wgsl/paths.wgsl");
 const TRAVERSAL: &str = include_str!("wgsl/traversal.wgsl");
 const TRACE: &str = include_str!("wgsl/trace.wgsl");
 const SCATTER: &str = include_str!("wgsl/scatter.wgsl");
+const RAYS: &str = include_str!("wgsl/rays.wgsl");
 const FOLLOW: &str = include_str!("wgsl/follow.wgsl");
 
 /// What a scene calls for, as texts for one adapter.
@@ -65,7 +67,7 @@ impl Kernels {
     /// Constants and structures of all kernels.
     fn constants(&self) -> String {
         format!(
-            "const QUEUES: u32 = {}u;\nconst STRIDE: u32 = {}u;\nconst STACK: u32 = {STACK}u;\n\n{WAVEFRONT}",
+            "const WORKGROUP: u32 = {WORKGROUP}u;\nconst QUEUES: u32 = {}u;\nconst STRIDE: u32 = {}u;\nconst STACK: u32 = {STACK}u;\n\n{WAVEFRONT}",
             self.queues(),
             self.layers.stride(),
         )
@@ -269,6 +271,20 @@ fn shade(@builtin(global_invocation_id) id: vec3u) {{
             false => format!("{indent}if path.depth == 1u {{\n{lines}{indent}}}\n"),
         }
     }
+}
+
+/// `trace_rays`: ray queries, apart from any scene.
+pub(crate) fn rays_kernel(arithmetic: Arithmetic, f64: bool) -> String {
+    let mut module = Module::new(arithmetic);
+    module.add_text(&format!(
+        "const WORKGROUP: u32 = {WORKGROUP}u;\nconst STACK: u32 = {STACK}u;\n"
+    ));
+    module.add_text(&sections(
+        TRAVERSAL,
+        &[if f64 { "f64" } else { "f32" }, "sided"],
+    ));
+    module.add_text(RAYS);
+    module.finish()
 }
 
 /// How a path goes on: statements on what `step` has.

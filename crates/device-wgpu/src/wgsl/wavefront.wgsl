@@ -1,7 +1,5 @@
 // The kernels of the wavefront: paths wait in queues, one for each program (thesis, section 4.1).
 
-const WORKGROUP: u32 = 64u;
-
 struct Settings {
     // Of the image, in pixels.
     width: f32,
