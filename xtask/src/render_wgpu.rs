@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
 use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount};
-use residual_device_wgpu::{Gpu, Mapping, list_adapters};
+use residual_device_wgpu::{Arithmetic, Dialect, Gpu, Mapping, Mode, Question, list_adapters};
 use residual_driver::gpu::{GpuDriver, GpuPasses, arithmetic};
 use residual_frontend::hierarchy_quality;
 use residual_frontend::session::Session;
@@ -96,14 +96,24 @@ pub(crate) fn adapters() -> Result<()> {
     }
     for adapter in adapters {
         println!("{adapter}");
-        let probe = Gpu::open(Some(&adapter.name)).and_then(|gpu| gpu.probe());
-        match probe {
-            Ok(probe) => {
-                println!("    plain WGSL: {}", probe.plain);
-                println!("    {}: {}", arithmetic(&probe.dialect), probe.answers);
-            }
-            Err(error) => println!("    {error}"),
+        if let Err(error) = measure(&adapter.name) {
+            println!("    {error}");
         }
+    }
+    Ok(())
+}
+
+/// Prints what an adapter makes of the whole suite of operations.
+fn measure(adapter: &str) -> Result<(), residual_device_wgpu::Error> {
+    let gpu = Gpu::open(Some(adapter))?;
+    let plain = Dialect {
+        mode: Mode::Plain,
+        arithmetic: Arithmetic::default(),
+    };
+    let chosen = gpu.probe()?.dialect;
+    for dialect in [plain, chosen] {
+        let answers = gpu.ask(&Question::all(), dialect)?;
+        println!("    {}: {answers}", arithmetic(&dialect));
     }
     Ok(())
 }

@@ -7,6 +7,15 @@ use naga::back::spv;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
+/// What becomes of numbers below the smallest normal one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Denormals {
+    /// What the driver makes of them.
+    Unstated,
+    /// The driver is told to keep them (SPV_KHR_float_controls).
+    Preserved,
+}
+
 /// A module for drivers.
 pub(crate) struct Spirv {
     pub(crate) words: Vec<u32>,
@@ -18,7 +27,7 @@ pub(crate) struct Spirv {
 ///
 /// # Errors
 /// With naga's words, if it does not accept the text.
-pub(crate) fn spirv(text: &str) -> Result<Spirv, String> {
+pub(crate) fn spirv(text: &str, denormals: Denormals) -> Result<Spirv, String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::FLOAT64)
         .validate(&module)
@@ -42,7 +51,7 @@ pub(crate) fn spirv(text: &str) -> Result<Spirv, String> {
     let words = spv::write_vec(&module, &info, &options, None).map_err(|e| e.to_string())?;
     let entry_points = module.entry_points.iter();
     Ok(Spirv {
-        words: decorate(&words),
+        words: decorate(&words, denormals),
         entry_points: entry_points
             .map(|point| (point.name.clone(), point.workgroup_size))
             .collect(),
@@ -51,8 +60,12 @@ pub(crate) fn spirv(text: &str) -> Result<Spirv, String> {
 
 /// Instructions of SPIR-V, by their numbers in section 3.52 of its specification.
 mod op {
+    pub(super) const EXTENSION: u32 = 10;
     pub(super) const EXT_INST_IMPORT: u32 = 11;
     pub(super) const EXT_INST: u32 = 12;
+    pub(super) const ENTRY_POINT: u32 = 15;
+    pub(super) const EXECUTION_MODE: u32 = 16;
+    pub(super) const CAPABILITY: u32 = 17;
     pub(super) const TYPE_VOID: u32 = 19;
     pub(super) const TYPE_FORWARD_POINTER: u32 = 39;
     pub(super) const DECORATE: u32 = 71;
@@ -61,23 +74,34 @@ mod op {
     pub(super) const F_SUB: u32 = 131;
     pub(super) const F_MUL: u32 = 133;
     pub(super) const F_DIV: u32 = 136;
+    /// `OpFRem` to `OpDot`: remainders, and products with vectors and matrices.
     pub(super) const F_REM: u32 = 140;
-    /// `OpFRem` to `OpDot`: remainders and products with vectors and matrices.
     pub(super) const DOT: u32 = 148;
 }
 /// `Fma` of GLSL.std.450.
 const GLSL_FMA: u32 = 50;
+/// A decoration, a capability and an execution mode.
 const NO_CONTRACTION: u32 = 42;
+const CAPABILITY_DENORM_PRESERVE: u32 = 4464;
+const DENORM_PRESERVE: u32 = 4459;
 /// Words before the first instruction.
 const HEADER: usize = 5;
 
-/// The same module with `NoContraction` on the results of floating-point arithmetic.
-fn decorate(words: &[u32]) -> Vec<u32> {
-    let (mut at, mut glsl, mut results, mut first_type) = (HEADER, 0, Vec::new(), None);
+/// The same module with `NoContraction` on the results of floating-point arithmetic, and what it says of denormals.
+fn decorate(words: &[u32], denormals: Denormals) -> Vec<u32> {
+    let (mut at, mut glsl, mut results, mut entry_points) = (HEADER, 0, Vec::new(), Vec::new());
+    let (mut capabilities_end, mut modes_end, mut first_type) = (HEADER, HEADER, None);
     while at < words.len() {
         let (code, length) = (words[at] & 0xffff, (words[at] >> 16) as usize);
+        let end = at + length;
         match code {
+            op::CAPABILITY => capabilities_end = end,
             op::EXT_INST_IMPORT => glsl = words[at + 1],
+            op::ENTRY_POINT => {
+                entry_points.push(words[at + 2]);
+                modes_end = end;
+            }
+            op::EXECUTION_MODE => modes_end = end,
             op::F_NEGATE | op::F_ADD | op::F_SUB | op::F_MUL | op::F_DIV => {
                 results.push(words[at + 2]);
             }
@@ -90,16 +114,38 @@ fn decorate(words: &[u32]) -> Vec<u32> {
             }
             _ => {}
         }
-        at += length;
+        at = end;
     }
-    // Decorations stand before the first type.
+    // Instructions have their order: capabilities, extensions, …, modes, …, decorations, types.
     let first_type = first_type.unwrap_or(words.len());
-    let mut decorated = words[..first_type].to_vec();
+    let mut decorated = words[..capabilities_end].to_vec();
+    if denormals == Denormals::Preserved {
+        decorated.extend([2 << 16 | op::CAPABILITY, CAPABILITY_DENORM_PRESERVE]);
+        let name = literal("SPV_KHR_float_controls");
+        decorated.push((1 + name.len() as u32) << 16 | op::EXTENSION);
+        decorated.extend(name);
+    }
+    decorated.extend(&words[capabilities_end..modes_end]);
+    if denormals == Denormals::Preserved {
+        for entry_point in entry_points {
+            decorated.extend([4 << 16 | op::EXECUTION_MODE, entry_point, DENORM_PRESERVE, 32]);
+        }
+    }
+    decorated.extend(&words[modes_end..first_type]);
     for result in results {
         decorated.extend([3 << 16 | op::DECORATE, result, NO_CONTRACTION]);
     }
     decorated.extend(&words[first_type..]);
     decorated
+}
+
+/// A string as SPIR-V has it: bytes in words, with a zero at the end.
+fn literal(text: &str) -> Vec<u32> {
+    let mut bytes = text.as_bytes().to_vec();
+    bytes.push(0);
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    let words = bytes.as_chunks().0.iter();
+    words.map(|&word| u32::from_le_bytes(word)).collect()
 }
 
 #[cfg(test)]
@@ -112,7 +158,7 @@ mod tests {
             @compute @workgroup_size(8, 2) fn main(@builtin(global_invocation_id) id: vec3u) {
                 x[id.x] = fma(x[0], x[1], -x[2]) * (x[3] + x[4]) / x[5] - floor(x[6]);
             }";
-        let spirv = spirv(text).unwrap();
+        let spirv = spirv(text, Denormals::Unstated).unwrap();
         assert_eq!(spirv.entry_points, [("main".to_owned(), [8, 2, 1])]);
         let no_contraction = spirv
             .words
@@ -124,7 +170,7 @@ mod tests {
 
     #[test]
     fn texts_that_are_no_wgsl_are_refused_in_words() {
-        let error = spirv("fn main() { let x = ; }").err().unwrap();
+        let error = spirv("fn main() { let x = ; }", Denormals::Unstated).err().unwrap();
         assert!(error.contains("expected"), "{error}");
     }
 }

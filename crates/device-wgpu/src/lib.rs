@@ -22,9 +22,11 @@ mod tree;
 mod wavefront;
 
 pub use error::Error;
+pub use exact::Denormals;
 pub use gpu::{AdapterDescription, Gpu, list_adapters};
 pub use kernels::{Kernels, Traits};
 pub use probe::{Answers, Probe, Question, Tally};
 pub use rays::RayQueries;
 pub use renderer::{Mapping, WgpuRenderer};
+pub use residual_wgsl::Arithmetic;
 pub use shader::{Dialect, Mode};

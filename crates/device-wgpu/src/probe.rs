@@ -13,6 +13,7 @@ use wgpu::{BufferUsages, Features};
 
 use crate::bindings::{Access, group, layout, pipeline_layout};
 use crate::error::Error;
+use crate::exact::Denormals;
 use crate::gpu::Gpu;
 use crate::shader::{Dialect, Mode, pipeline};
 
@@ -115,13 +116,22 @@ impl Answers {
         &self.0
     }
 
-    /// No answer to a question about this operation on numbers is wrong.
-    fn has_right(&self, op: Op) -> bool {
+    /// How many answers to questions about this operation are wrong.
+    fn wrong_of(&self, op: Op) -> usize {
         let of = |tally: &&Tally| match tally.question {
             Question::Operation(operation) => operation.op == op,
             Question::Expression(_) => false,
         };
-        self.0.iter().filter(of).all(|tally| tally.wrong == 0)
+        self.0.iter().filter(of).map(|tally| tally.wrong).sum()
+    }
+
+    fn has_right(&self, op: Op) -> bool {
+        self.wrong_of(op) == 0
+    }
+
+    /// How many answers are wrong.
+    fn wrong(&self) -> usize {
+        self.0.iter().map(|tally| tally.wrong).sum()
     }
 
     /// Every answer is right.
@@ -153,14 +163,12 @@ pub struct Probe {
     pub dialect: Dialect,
     /// What comes of it.
     pub answers: Answers,
-    /// What comes of plain WGSL.
-    pub plain: Answers,
 }
 
 impl Probe {
     /// Samples will have the processor's bits.
     pub fn is_exact(&self) -> bool {
-        self.dialect.mode == Mode::Exact && self.answers.are_exact()
+        self.dialect.mode != Mode::Plain && self.answers.are_exact()
     }
 }
 
@@ -172,44 +180,52 @@ impl Gpu {
     /// If the device fails.
     pub fn probe(&self) -> Result<Probe, Error> {
         let questions = Question::of_a_start();
-        let arithmetic = Arithmetic::default();
-        let mode = Mode::Plain;
-        let plain = self.ask(&questions, Dialect { mode, arithmetic })?;
+        let ask = |mode, arithmetic| {
+            let dialect = Dialect { mode, arithmetic };
+            let answers = self.ask(&questions, dialect)?;
+            Ok(Probe { dialect, answers })
+        };
+        let native = Arithmetic::default();
         if !self.is_exact() {
-            return Ok(Probe {
-                dialect: Dialect { mode, arithmetic },
-                answers: plain.clone(),
-                plain,
-            });
+            return ask(Mode::Plain, native);
         }
-        let mode = Mode::Exact;
-        let native = self.ask(&questions, Dialect { mode, arithmetic })?;
-        let has_f64 = self.has(Features::SHADER_F64);
-        let arithmetic = Arithmetic {
-            fma: match (native.has_right(Op::Fma), FUSES, has_f64) {
-                (true, ..) | (false, true, false) => Fma::Native,
-                (false, false, _) => Fma::Unfused,
-                (false, true, true) => Fma::Double,
-            },
-            division: match native.has_right(Op::Div) || !has_f64 {
-                true => Division::Native,
-                false => Division::Double,
-            },
-            square_root: match native.has_right(Op::Sqrt) || !has_f64 {
-                true => SquareRoot::Native,
-                false => SquareRoot::Double,
-            },
-        };
-        let dialect = Dialect { mode, arithmetic };
-        let answers = match arithmetic == Arithmetic::default() {
-            true => native,
-            false => self.ask(&questions, dialect)?,
-        };
-        Ok(Probe {
-            dialect,
-            answers,
-            plain,
-        })
+        let mut best = ask(Mode::Exact(Denormals::Unstated), native)?;
+        if !best.answers.has_right(Op::Mul) {
+            let preserved = ask(Mode::Exact(Denormals::Preserved), native)?;
+            if preserved.answers.wrong() < best.answers.wrong() {
+                best = preserved;
+            }
+        }
+        if best.is_exact() {
+            return Ok(best);
+        }
+        // What is wrong may be right in other words.
+        let mut arithmetic = native;
+        if !FUSES {
+            arithmetic.fma = Fma::Unfused;
+        }
+        if self.has(Features::SHADER_F64) {
+            let double = Arithmetic {
+                fma: if FUSES { Fma::Double } else { Fma::Unfused },
+                division: Division::Double,
+                square_root: SquareRoot::Double,
+            };
+            let double_answers = ask(best.dialect.mode, double)?.answers;
+            let is_better = |op| double_answers.wrong_of(op) < best.answers.wrong_of(op);
+            if is_better(Op::Fma) {
+                arithmetic.fma = double.fma;
+            }
+            if is_better(Op::Div) {
+                arithmetic.division = double.division;
+            }
+            if is_better(Op::Sqrt) {
+                arithmetic.square_root = double.square_root;
+            }
+        }
+        if arithmetic != native {
+            best = ask(best.dialect.mode, arithmetic)?;
+        }
+        Ok(best)
     }
 
     /// The adapter's answers to some questions.
