@@ -128,7 +128,12 @@ fn decorate(words: &[u32], denormals: Denormals) -> Vec<u32> {
     decorated.extend(&words[capabilities_end..modes_end]);
     if denormals == Denormals::Preserved {
         for entry_point in entry_points {
-            decorated.extend([4 << 16 | op::EXECUTION_MODE, entry_point, DENORM_PRESERVE, 32]);
+            decorated.extend([
+                4 << 16 | op::EXECUTION_MODE,
+                entry_point,
+                DENORM_PRESERVE,
+                32,
+            ]);
         }
     }
     decorated.extend(&words[modes_end..first_type]);
@@ -170,7 +175,9 @@ mod tests {
 
     #[test]
     fn texts_that_are_no_wgsl_are_refused_in_words() {
-        let error = spirv("fn main() { let x = ; }", Denormals::Unstated).err().unwrap();
+        let error = spirv("fn main() { let x = ; }", Denormals::Unstated)
+            .err()
+            .unwrap();
         assert!(error.contains("expected"), "{error}");
     }
 }

@@ -203,8 +203,19 @@ impl Gpu {
     }
 
     /// Waits until everything submitted is done.
-    pub(crate) fn wait(&self) -> Result<(), Error> {
-        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+    fn wait(&self) -> Result<(), Error> {
+        self.wait_for(None)
+    }
+
+    /// Waits until a submission is done, or all of them.
+    pub(crate) fn wait_for(
+        &self,
+        submission_index: Option<wgpu::SubmissionIndex>,
+    ) -> Result<(), Error> {
+        let polled = self.device.poll(wgpu::PollType::Wait {
+            submission_index,
+            timeout: None,
+        });
         polled.map_err(|error| self.failed(error.to_string()))?;
         self.check()
     }

@@ -16,16 +16,28 @@ pub(crate) struct Settings {
     height: f32,
     columns: u32,
     places: u32,
-    pub(crate) first_sample: u32,
-    pub(crate) first: u32,
+    first_sample: u32,
+    first: u32,
     pub(crate) count: u32,
-    pub(crate) slots: u32,
+    slots: u32,
     seed: u32,
     pub(crate) max_depth: u32,
     roulette_from: u32,
     reach: f32,
     first_packet: u32,
     _unused: [u32; 3],
+}
+
+impl Settings {
+    /// These samples: some of the places of those from `first_sample` on.
+    pub(crate) fn of(self, first_sample: u32, first: u32, count: u32) -> Self {
+        Self {
+            first_sample,
+            first,
+            count,
+            ..self
+        }
+    }
 }
 
 /// The pixels of an image in the order in which kernels number them.

@@ -7,8 +7,8 @@ use crate::gpu::Gpu;
 use crate::kernels::Kernels;
 use crate::launch::Settings;
 use crate::shader::{Mode, pipeline};
-use crate::stages::{Stage, Stopwatch};
-use crate::state::{Header, State};
+use crate::stages::Stage;
+use crate::state::{Launched, State};
 
 /// The kernel.
 pub(crate) struct Megakernel(ComputePipeline);
@@ -28,29 +28,24 @@ impl Megakernel {
         pipeline(gpu, mode, &state.work, &text, "follow_path").map(Self)
     }
 
-    /// Renders `settings.count` samples.
-    ///
-    /// # Errors
-    /// If the device fails.
+    /// Renders `settings.count` samples, whose `bytes` are to come back through one of the staging buffers.
     pub(crate) fn launch(
         &self,
         gpu: &Gpu,
         state: &State,
         settings: &Settings,
-        watch: &mut Stopwatch,
-    ) -> Result<Header, Error> {
+        (staging, bytes): (usize, u64),
+    ) -> Launched {
         let groups = state.begin(gpu, settings);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
+        let laps = {
             let mut pass = encoder.begin_compute_pass(&Default::default());
-            watch.begin(&mut pass);
+            let mut laps = state.clock.begin(&mut pass);
             state.bind(&mut pass, &self.0);
             pass.dispatch_workgroups(groups, 1, 1);
-            watch.lap(&mut pass, Stage::Shade);
-        }
-        watch.resolve(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
-        watch.read(gpu)?;
-        state.header(gpu)
+            state.clock.lap(&mut pass, &mut laps, Stage::Shade);
+            laps
+        };
+        state.submit(gpu, encoder, laps, staging, bytes)
     }
 }

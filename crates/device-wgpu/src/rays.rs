@@ -10,7 +10,7 @@ use crate::gpu::Gpu;
 use crate::kernels::rays_kernel;
 use crate::launch::WORKGROUP;
 use crate::shader::{Dialect, pipeline};
-use crate::stages::{Stage, Stopwatch};
+use crate::stages::{Clock, Stage};
 use crate::tree::Tree;
 
 /// A hierarchy on a device.
@@ -65,19 +65,25 @@ impl<'g> RayQueries<'g> {
             .queue
             .write_buffer(&settings, 0, bytemuck::cast_slice(&words));
         let group = group(self.gpu, &self.layout, &[&self.tree, &from, &to, &settings]);
-        let mut watch = Stopwatch::new(self.gpu);
+        let clock = Clock::new(self.gpu);
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        {
+        let laps = {
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(&self.kernel);
             pass.set_bind_group(0, &group, &[]);
-            watch.begin(&mut pass);
+            let mut laps = clock.begin(&mut pass);
             pass.dispatch_workgroups((rays.len() as u32).div_ceil(WORKGROUP), 1, 1);
-            watch.lap(&mut pass, Stage::TraceCamera);
-        }
-        watch.resolve(&mut encoder);
+            clock.lap(&mut pass, &mut laps, Stage::TraceCamera);
+            laps
+        };
+        let ticks = self
+            .gpu
+            .buffer("ticks", Clock::BYTES, BufferUsages::COPY_SRC);
+        clock.copy(&mut encoder, &laps, &ticks, 0);
         self.gpu.queue.submit([encoder.finish()]);
-        watch.read(self.gpu)?;
+        let (mut bytes, mut seconds) = ([0; Clock::BYTES as usize], [0.0; Stage::COUNT]);
+        self.gpu.download(&ticks, &mut bytes)?;
+        clock.add(&laps, &bytes, &mut seconds);
         let mut words = vec![0_u32; 4 * rays.len()];
         self.gpu
             .download(&to, bytemuck::cast_slice_mut(&mut words))?;
@@ -87,6 +93,6 @@ impl<'g> RayQueries<'g> {
             v: f32::from_bits(v),
             prim,
         });
-        Ok((hits.collect(), watch.seconds[Stage::TraceCamera as usize]))
+        Ok((hits.collect(), seconds[Stage::TraceCamera as usize]))
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::time::Instant;
 
 use rayon::prelude::*;
 use residual_bvh::Bvh;
@@ -19,8 +20,8 @@ use crate::launch::{Places, Settings};
 use crate::megakernel::Megakernel;
 use crate::scene::Scene;
 use crate::shader::Dialect;
-use crate::stages::{Stage, Stopwatch};
-use crate::state::{Header, State, bytes_per_path};
+use crate::stages::{Stage, StageSeconds};
+use crate::state::{Launched, State, bytes_per_path};
 use crate::wavefront::Wavefront;
 
 /// Paths under way at once: enough to fill a GPU.
@@ -133,18 +134,32 @@ impl<'g> WgpuRenderer<'g> {
             roulette_from: 2,
             reach: f32::MAX,
         };
-        let mut settings = self
+        let settings = self
             .places
-            .settings(&options, self.slots, self.first_packet);
-        settings.count = self.slots.min(64);
-        self.launch(&settings, &mut Stopwatch::new(self.gpu))?;
+            .settings(&options, self.slots, self.first_packet)
+            .of(0, 0, self.slots.min(64));
+        let mut seconds = StageSeconds::default();
+        let launched = self.launch(&settings, 0, &mut seconds)?;
+        self.state
+            .collect(self.gpu, &launched, &mut seconds, |_| ())?;
         Ok(())
     }
 
-    fn launch(&self, settings: &Settings, watch: &mut Stopwatch) -> Result<Header, Error> {
+    fn launch(
+        &self,
+        settings: &Settings,
+        staging: usize,
+        seconds: &mut StageSeconds,
+    ) -> Result<Launched, Error> {
+        let Self { gpu, state, .. } = self;
+        let bytes = 4 * u64::from(settings.count) * self.layers.stride() as u64;
         match &self.kernels {
-            Compiled::Wavefront(kernels) => kernels.launch(self.gpu, &self.state, settings, watch),
-            Compiled::Megakernel(kernels) => kernels.launch(self.gpu, &self.state, settings, watch),
+            Compiled::Wavefront(kernels) => {
+                kernels.launch(gpu, state, settings, (staging, bytes), seconds)
+            }
+            Compiled::Megakernel(kernels) => {
+                Ok(kernels.launch(gpu, state, settings, (staging, bytes)))
+            }
         }
     }
 
@@ -163,45 +178,74 @@ impl<'g> WgpuRenderer<'g> {
         pass: Pass,
         options: &TracerOptions,
     ) -> Result<Counters, Error> {
-        let per_sample = self.places.count();
-        let stride = self.layers.stride();
-        let mut watch = Stopwatch::new(self.gpu);
         let mut counters = Counters::default();
-        // Whole samples at a time; a large image is put together from several launches.
-        let batch = (self.slots / per_sample).clamp(1, pass.count);
-        let mut first_sample = pass.first;
-        let end = pass.first + pass.count;
-        while first_sample < end {
-            let samples = batch.min(end - first_sample);
-            let all = samples * per_sample;
-            let mut values = vec![0.0; all as usize * stride];
-            for first in (0..all).step_by(self.slots as usize) {
-                let count = self.slots.min(all - first);
-                let mut settings = self.places.settings(options, self.slots, self.first_packet);
-                settings.first_sample = first_sample;
-                settings.first = first;
-                settings.count = count;
-                let did = self.launch(&settings, &mut watch)?;
-                counters.bounce_rays += u64::from(did.bounce_rays);
-                counters.shadow_rays += u64::from(did.shadow_rays);
-                let part = range(first, count, stride);
-                let bytes = bytemuck::cast_slice_mut(&mut values[part]);
-                self.gpu.download(&self.state.samples, bytes)?;
+        let mut seconds = StageSeconds::default();
+        let mut whole = Vec::new();
+        let mut before: Option<Launched> = None;
+        // The processor adds the samples of one launch while the device is at the next.
+        for (index, settings) in self.launches(pass, options).enumerate() {
+            let launched = self.launch(&settings, index % 2, &mut seconds)?;
+            if let Some(before) = before.replace(launched) {
+                self.finish(&before, film, &mut whole, &mut counters, &mut seconds)?;
             }
-            let film_start = std::time::Instant::now();
-            self.add_to(film, &values);
-            counters.film += film_start.elapsed().as_secs_f64();
-            first_sample += samples;
+        }
+        if let Some(last) = before {
+            self.finish(&last, film, &mut whole, &mut counters, &mut seconds)?;
         }
         let [width, height] = options.image.map(u64::from);
         counters.camera_rays = width * height * u64::from(pass.count);
-        let seconds = |stage: Stage| watch.seconds[stage as usize];
-        counters.emit = seconds(Stage::Emit);
-        counters.trace_camera = seconds(Stage::TraceCamera);
-        counters.trace_bounce = seconds(Stage::TraceOn);
-        counters.sort = seconds(Stage::Sort);
-        counters.shade = seconds(Stage::Shade);
+        counters.emit = seconds[Stage::Emit as usize];
+        counters.trace_camera = seconds[Stage::TraceCamera as usize];
+        counters.trace_bounce = seconds[Stage::TraceOn as usize];
+        counters.sort = seconds[Stage::Sort as usize];
+        counters.shade = seconds[Stage::Shade as usize];
         Ok(counters)
+    }
+
+    /// The launches of a pass: of whole samples, or of parts of one sample of a large image.
+    fn launches(&self, pass: Pass, options: &TracerOptions) -> impl Iterator<Item = Settings> {
+        let per_sample = self.places.count();
+        let batch = (self.slots / per_sample).max(1);
+        let settings = self.places.settings(options, self.slots, self.first_packet);
+        let slots = self.slots;
+        (0..pass.count)
+            .step_by(batch as usize)
+            .flat_map(move |first_sample| {
+                let places = batch.min(pass.count - first_sample) * per_sample;
+                (0..places).step_by(slots as usize).map(move |first| {
+                    settings.of(pass.first + first_sample, first, slots.min(places - first))
+                })
+            })
+    }
+
+    /// Waits for a launch, and adds its samples to the film as soon as they are whole; `parts` has what is not yet.
+    fn finish(
+        &self,
+        launched: &Launched,
+        film: &mut Film,
+        parts: &mut Vec<f32>,
+        counters: &mut Counters,
+        seconds: &mut StageSeconds,
+    ) -> Result<(), Error> {
+        let sample = self.places.count() as usize * self.layers.stride();
+        let mut film_seconds = 0.0;
+        let did = self.state.collect(self.gpu, launched, seconds, |values| {
+            let start = Instant::now();
+            if values.len() >= sample {
+                self.add_to(film, values);
+            } else {
+                parts.extend_from_slice(values);
+                if parts.len() == sample {
+                    self.add_to(film, parts);
+                    parts.clear();
+                }
+            }
+            film_seconds = start.elapsed().as_secs_f64();
+        })?;
+        counters.film += film_seconds;
+        counters.bounce_rays += u64::from(did.bounce_rays);
+        counters.shadow_rays += u64::from(did.shadow_rays);
+        Ok(())
     }
 
     /// Adds whole samples, `values[sample][place][channel]`.

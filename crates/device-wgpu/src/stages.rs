@@ -1,8 +1,7 @@
 //! How long the stages of a launch take, by the device's own clock.
 
-use wgpu::{BufferUsages, Features};
+use wgpu::{BufferUsages, CommandEncoder, ComputePass, Features};
 
-use crate::error::Error;
 use crate::gpu::Gpu;
 
 /// What kernels do.
@@ -25,29 +24,35 @@ impl Stage {
 }
 
 /// Timestamps of one submission at most.
-const TIMESTAMPS: u32 = 128;
+const TIMESTAMPS: u32 = 64;
 
 /// A clock that is read between kernels; it says nothing where the adapter has none.
-pub(crate) struct Stopwatch {
-    clock: Option<Clock>,
-    /// What ended at each timestamp since the first.
-    laps: Vec<Stage>,
-    /// Device seconds by stage.
-    pub(crate) seconds: [f64; Stage::COUNT],
+pub(crate) struct Clock {
+    parts: Option<Parts>,
 }
 
-struct Clock {
+struct Parts {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     /// Seconds of a tick.
     tick: f64,
 }
 
-impl Stopwatch {
+/// What ended at each timestamp of a submission since the first.
+#[derive(Debug, Default)]
+pub(crate) struct Laps(Vec<Stage>);
+
+/// Device seconds by stage.
+pub(crate) type StageSeconds = [f64; Stage::COUNT];
+
+impl Clock {
+    /// Bytes of a submission's timestamps.
+    pub(crate) const BYTES: u64 = 8 * TIMESTAMPS as u64;
+
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let has_clock =
             gpu.has(Features::TIMESTAMP_QUERY | Features::TIMESTAMP_QUERY_INSIDE_PASSES);
-        let clock = has_clock.then(|| Clock {
+        let parts = has_clock.then(|| Parts {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("stages"),
                 ty: wgpu::QueryType::Timestamp,
@@ -55,51 +60,55 @@ impl Stopwatch {
             }),
             resolved: gpu.buffer(
                 "timestamps",
-                8 * u64::from(TIMESTAMPS),
+                Self::BYTES,
                 BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC,
             ),
             tick: f64::from(gpu.queue.get_timestamp_period()) * 1e-9,
         });
-        Self {
-            clock,
-            laps: Vec::new(),
-            seconds: [0.0; Stage::COUNT],
-        }
+        Self { parts }
     }
 
     /// The first timestamp of a submission.
-    pub(crate) fn begin(&mut self, pass: &mut wgpu::ComputePass<'_>) {
-        if let Some(clock) = &self.clock {
-            pass.write_timestamp(&clock.queries, 0);
+    pub(crate) fn begin(&self, pass: &mut ComputePass<'_>) -> Laps {
+        if let Some(parts) = &self.parts {
+            pass.write_timestamp(&parts.queries, 0);
         }
+        Laps::default()
     }
 
     /// A stage has ended.
-    pub(crate) fn lap(&mut self, pass: &mut wgpu::ComputePass<'_>, stage: Stage) {
-        if let Some(clock) = &self.clock {
-            self.laps.push(stage);
-            pass.write_timestamp(&clock.queries, self.laps.len() as u32);
+    pub(crate) fn lap(&self, pass: &mut ComputePass<'_>, laps: &mut Laps, stage: Stage) {
+        if let Some(parts) = &self.parts {
+            laps.0.push(stage);
+            pass.write_timestamp(&parts.queries, laps.0.len() as u32);
         }
     }
 
-    /// Behind the pass.
-    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        if let Some(clock) = &self.clock {
-            let range = 0..self.laps.len() as u32 + 1;
-            encoder.resolve_query_set(&clock.queries, range, &clock.resolved, 0);
+    /// Behind the pass: copies the timestamps to a place in a buffer.
+    pub(crate) fn copy(
+        &self,
+        encoder: &mut CommandEncoder,
+        laps: &Laps,
+        to: &wgpu::Buffer,
+        at: u64,
+    ) {
+        if let Some(parts) = &self.parts {
+            let count = laps.0.len() as u32 + 1;
+            encoder.resolve_query_set(&parts.queries, 0..count, &parts.resolved, 0);
+            let bytes = 8 * u64::from(count);
+            encoder.copy_buffer_to_buffer(&parts.resolved, 0, to, at, bytes);
         }
     }
 
-    /// After submission: adds up the stages.
-    pub(crate) fn read(&mut self, gpu: &Gpu) -> Result<(), Error> {
-        let Some(clock) = &self.clock else {
-            return Ok(());
+    /// Adds up what was copied.
+    pub(crate) fn add(&self, laps: &Laps, bytes: &[u8], seconds: &mut StageSeconds) {
+        let Some(parts) = &self.parts else {
+            return;
         };
-        let mut ticks = vec![0_u64; self.laps.len() + 1];
-        gpu.download(&clock.resolved, bytemuck::cast_slice_mut(&mut ticks))?;
-        for (stage, times) in self.laps.drain(..).zip(ticks.windows(2)) {
-            self.seconds[stage as usize] += times[1].saturating_sub(times[0]) as f64 * clock.tick;
+        let ticks = bytes.as_chunks().0.iter();
+        let ticks: Vec<u64> = ticks.map(|&tick| u64::from_le_bytes(tick)).collect();
+        for (stage, times) in laps.0.iter().zip(ticks.windows(2)) {
+            seconds[*stage as usize] += times[1].saturating_sub(times[0]) as f64 * parts.tick;
         }
-        Ok(())
     }
 }

@@ -1,8 +1,10 @@
 //! What kernels of every mapping share: the buffers of a scene, of the paths under way, and of their samples.
 
+use std::sync::{Arc, Mutex};
+
 use bytemuck::Zeroable;
 use residual_wgsl::Binding;
-use wgpu::{BindGroup, BufferUsages, PipelineLayout};
+use wgpu::{BindGroup, BufferUsages, CommandEncoder, PipelineLayout};
 
 use crate::bindings::Access::{Read, Uniform, Write};
 use crate::bindings::{group, layout, pipeline_layout};
@@ -10,6 +12,7 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::launch::{Settings, WORKGROUP};
 use crate::scene::Scene;
+use crate::stages::{Clock, Laps, StageSeconds};
 
 /// Bytes of a path, a shadow ray and the entries of a path in the queues.
 const PATH: u64 = 64;
@@ -40,6 +43,22 @@ pub(crate) struct State {
     settings: wgpu::Buffer,
     queues: wgpu::Buffer,
     queue_count: usize,
+    pub(crate) clock: Clock,
+    /// What comes back of a launch, and of the one behind it: [`Header`], timestamps, samples.
+    staging: [wgpu::Buffer; 2],
+}
+
+/// Where timestamps and samples begin in what comes back.
+const TICKS_AT: u64 = 32;
+const SAMPLES_AT: u64 = TICKS_AT + Clock::BYTES;
+
+/// A launch that is under way.
+pub(crate) struct Launched {
+    laps: Laps,
+    staging: usize,
+    bytes: u64,
+    submission: wgpu::SubmissionIndex,
+    failure: Arc<Mutex<Option<wgpu::BufferAsyncError>>>,
 }
 
 /// The first words of the queues: the kernels' `Queues`.
@@ -113,6 +132,15 @@ impl State {
             settings,
             queues,
             queue_count,
+            clock: Clock::new(gpu),
+            staging: [(); 2].map(|()| {
+                gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("staging"),
+                    size: SAMPLES_AT + slots * 4 * stride as u64,
+                    usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                })
+            }),
         }
     }
 
@@ -136,13 +164,66 @@ impl State {
         pass.set_bind_group(1, &self.paths, &[]);
     }
 
-    /// The state of the queues.
+    /// Submits a launch; `bytes` of its samples are to come back through one of the two staging buffers, which must not be
+    /// in use.
+    pub(crate) fn submit(
+        &self,
+        gpu: &Gpu,
+        mut encoder: CommandEncoder,
+        laps: Laps,
+        staging: usize,
+        bytes: u64,
+    ) -> Launched {
+        let to = &self.staging[staging];
+        let header = size_of::<Header>() as u64;
+        encoder.copy_buffer_to_buffer(&self.queues, 0, to, 0, header);
+        self.clock.copy(&mut encoder, &laps, to, TICKS_AT);
+        encoder.copy_buffer_to_buffer(&self.samples, 0, to, SAMPLES_AT, bytes);
+        let submission = gpu.queue.submit([encoder.finish()]);
+        let failure = Arc::new(Mutex::new(None));
+        let answer = Arc::clone(&failure);
+        to.map_async(wgpu::MapMode::Read, ..SAMPLES_AT + bytes, move |result| {
+            if let Err(error) = result {
+                *answer.lock().unwrap_or_else(|poison| poison.into_inner()) = Some(error);
+            }
+        });
+        Launched {
+            laps,
+            staging,
+            bytes,
+            submission,
+            failure,
+        }
+    }
+
+    /// Waits for a launch, and hands out its samples.
     ///
     /// # Errors
     /// If the device fails.
-    pub(crate) fn header(&self, gpu: &Gpu) -> Result<Header, Error> {
-        let mut header = Header::default();
-        gpu.download(&self.queues, bytemuck::bytes_of_mut(&mut header))?;
+    pub(crate) fn collect(
+        &self,
+        gpu: &Gpu,
+        launched: &Launched,
+        seconds: &mut StageSeconds,
+        samples: impl FnOnce(&[f32]),
+    ) -> Result<Header, Error> {
+        gpu.wait_for(Some(launched.submission.clone()))?;
+        let failure = &launched.failure;
+        if let Some(error) = &*failure.lock().unwrap_or_else(|poison| poison.into_inner()) {
+            return Err(gpu.failed(error.to_string()));
+        }
+        let staging = &self.staging[launched.staging];
+        let header = {
+            let mapped = staging
+                .get_mapped_range(..SAMPLES_AT + launched.bytes)
+                .map_err(|error| gpu.failed(error.to_string()))?;
+            let (head, of_samples) = mapped.split_at(SAMPLES_AT as usize);
+            let (header, ticks) = head.split_at(TICKS_AT as usize);
+            self.clock.add(&launched.laps, ticks, seconds);
+            samples(bytemuck::cast_slice(of_samples));
+            bytemuck::pod_read_unaligned(&header[..size_of::<Header>()])
+        };
+        staging.unmap();
         Ok(header)
     }
 }

@@ -1,15 +1,15 @@
 //! The wavefront: kernels of one kind of work each, between which paths wait in queues.
 
 use rayon::prelude::*;
-use wgpu::ComputePipeline;
+use wgpu::{ComputePass, ComputePipeline};
 
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::kernels::Kernels;
 use crate::launch::Settings;
 use crate::shader::{Mode, pipeline};
-use crate::stages::{Stage, Stopwatch};
-use crate::state::{Header, State};
+use crate::stages::{Laps, Stage, StageSeconds};
+use crate::state::{Launched, State};
 
 /// Vertices of paths between two looks at whether any path is left.
 const VERTICES: u32 = 16;
@@ -56,7 +56,7 @@ impl Wavefront {
         })
     }
 
-    /// Renders `settings.count` samples, of paths of at most this many vertices.
+    /// Renders `settings.count` samples, whose `bytes` are to come back through one of the staging buffers.
     ///
     /// # Errors
     /// If the device fails.
@@ -65,79 +65,75 @@ impl Wavefront {
         gpu: &Gpu,
         state: &State,
         settings: &Settings,
-        watch: &mut Stopwatch,
-    ) -> Result<Header, Error> {
+        (staging, bytes): (usize, u64),
+        seconds: &mut StageSeconds,
+    ) -> Result<Launched, Error> {
         let groups = state.begin(gpu, settings);
         let mut done = 0;
         loop {
             let vertices = VERTICES.min(settings.max_depth - done);
+            let is_last = done + vertices == settings.max_depth;
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            {
+            let laps = {
                 let mut pass = encoder.begin_compute_pass(&Default::default());
-                watch.begin(&mut pass);
+                let mut laps = state.clock.begin(&mut pass);
                 if done == 0 {
                     state.bind(&mut pass, &self.emit);
                     pass.dispatch_workgroups(groups, 1, 1);
-                    watch.lap(&mut pass, Stage::Emit);
+                    state.clock.lap(&mut pass, &mut laps, Stage::Emit);
                 }
                 for vertex in done..done + vertices {
-                    self.step(&mut pass, state, watch, vertex);
+                    self.step(&mut pass, state, &mut laps, vertex);
                 }
-                done += vertices;
-                if done == settings.max_depth {
+                if is_last {
                     // The last shadow rays.
                     self.trace(&mut pass, state);
-                    watch.lap(&mut pass, Stage::TraceOn);
+                    state.clock.lap(&mut pass, &mut laps, Stage::TraceOn);
                 }
+                laps
+            };
+            let launched = state.submit(gpu, encoder, laps, staging, bytes);
+            if is_last {
+                return Ok(launched);
             }
-            watch.resolve(&mut encoder);
-            gpu.queue.submit([encoder.finish()]);
-            watch.read(gpu)?;
-            let header = state.header(gpu)?;
-            if done == settings.max_depth || header.is_done() {
-                return Ok(header);
+            done += vertices;
+            // Long paths are rare: is any left?
+            let header = state.collect(gpu, &launched, seconds, |_| ())?;
+            if header.is_done() {
+                let encoder = gpu.device.create_command_encoder(&Default::default());
+                return Ok(state.submit(gpu, encoder, Laps::default(), staging, bytes));
             }
         }
     }
 
     /// One vertex of all paths.
-    fn step(
-        &self,
-        pass: &mut wgpu::ComputePass<'_>,
-        state: &State,
-        watch: &mut Stopwatch,
-        vertex: u32,
-    ) {
+    fn step(&self, pass: &mut ComputePass<'_>, state: &State, laps: &mut Laps, vertex: u32) {
         self.trace(pass, state);
-        let is_first = vertex == 0;
-        watch.lap(
-            pass,
-            if is_first {
-                Stage::TraceCamera
-            } else {
-                Stage::TraceOn
-            },
-        );
+        let traced = match vertex {
+            0 => Stage::TraceCamera,
+            _ => Stage::TraceOn,
+        };
+        state.clock.lap(pass, laps, traced);
         between(pass, state, &self.plan);
         state.bind(pass, &self.scatter);
         pass.dispatch_workgroups_indirect(&state.arguments, 12);
-        watch.lap(pass, Stage::Sort);
+        state.clock.lap(pass, laps, Stage::Sort);
         for (queue, shade) in &self.shade {
             state.bind(pass, shade);
             pass.dispatch_workgroups_indirect(&state.arguments, 12 * (2 + *queue as u64));
         }
         between(pass, state, &self.turn);
-        watch.lap(pass, Stage::Shade);
+        state.clock.lap(pass, laps, Stage::Shade);
     }
 
-    fn trace(&self, pass: &mut wgpu::ComputePass<'_>, state: &State) {
+    fn trace(&self, pass: &mut ComputePass<'_>, state: &State) {
         state.bind(pass, &self.trace);
         pass.dispatch_workgroups_indirect(&state.arguments, 0);
     }
 }
 
 /// Runs a kernel of one thread.
-fn between(pass: &mut wgpu::ComputePass<'_>, state: &State, kernel: &ComputePipeline) {
+fn between(pass: &mut ComputePass<'_>, state: &State, kernel: &ComputePipeline) {
     pass.set_pipeline(kernel);
     pass.set_bind_group(0, &state.control, &[]);
     pass.dispatch_workgroups(1, 1, 1);
