@@ -14,6 +14,8 @@ const PATHS: &str = include_str!("wgsl/paths.wgsl");
 const TRAVERSAL: &str = include_str!("wgsl/traversal.wgsl");
 const TRACE: &str = include_str!("wgsl/trace.wgsl");
 const SCATTER: &str = include_str!("wgsl/scatter.wgsl");
+const TALLIES: &str = include_str!("wgsl/tallies.wgsl");
+const COMPACTION: &str = include_str!("wgsl/compaction.wgsl");
 const RAYS: &str = include_str!("wgsl/rays.wgsl");
 const FOLLOW: &str = include_str!("wgsl/follow.wgsl");
 
@@ -128,6 +130,7 @@ fn emit_paths(@builtin(global_invocation_id) id: vec3u) {{
     pub fn trace(&self) -> String {
         let mut module = self.module();
         self.add_traversal(&mut module);
+        module.add_text(TALLIES);
         module.add_text(&sections(TRACE, &self.section_names()));
         module.finish()
     }
@@ -177,6 +180,7 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
     /// `scatter`: paths go to the queue of the program that they have hit.
     pub fn scatter(&self) -> String {
         let mut module = self.module();
+        module.add_text(TALLIES);
         module.add_text(SCATTER);
         module.finish()
     }
@@ -190,16 +194,31 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
         let mut module = self.module();
         module.add(step);
         let body = self.take_step(step, &QUEUED);
+        module.add_text(COMPACTION);
         module.add_text(&format!(
             "\
 @compute @workgroup_size(WORKGROUP)
-fn shade(@builtin(global_invocation_id) id: vec3u) {{
-    if id.x >= atomicLoad(&queues.counts[{queue}]) {{
-        return;
+fn shade(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(local_invocation_index) thread: u32,
+) {{
+    clear_counts(thread);
+    var slot: u32;
+    var next = NONE;
+    var shadow = NONE;
+    var shadow_ray: ShadowRay;
+    if id.x < atomicLoad(&queues.counts[{queue}]) {{
+        slot = queues.entries[2u * settings.slots + queues.starts[{queue}] + id.x];
+        let path = paths[slot];
+{body}    }}
+    reserve(thread);
+    if next != NONE {{
+        queues.entries[(1u - queues.side) * settings.slots + next_start + next] = slot;
     }}
-    let slot = queues.entries[2u * settings.slots + queues.starts[{queue}] + id.x];
-    let path = paths[slot];
-{body}}}
+    if shadow != NONE {{
+        shadow_rays[shadow_start + shadow] = shadow_ray;
+    }}
+}}
 "
         ));
         module.finish()
@@ -296,14 +315,14 @@ struct WayOn {
 
 /// Through queues.
 const QUEUED: WayOn = WayOn {
-    indent: "    ",
+    indent: "        ",
     shadow: &[
-        "let place = atomicAdd(&queues.shadows, 1u);",
-        "shadow_rays[place] = ShadowRay(step.shadow_org, step.shadow_tmax, step.shadow_dir, slot, step.shadow_contribution);",
+        "shadow = atomicAdd(&shadow_count, 1u);",
+        "shadow_ray = ShadowRay(step.shadow_org, step.shadow_tmax, step.shadow_dir, slot, step.shadow_contribution);",
     ],
     bounce: &[
+        "next = atomicAdd(&next_count, 1u);",
         "paths[slot] = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, path.depth + 1u, vec4u(0u));",
-        "queues.entries[(1u - queues.side) * settings.slots + atomicAdd(&queues.next, 1u)] = slot;",
     ],
 };
 

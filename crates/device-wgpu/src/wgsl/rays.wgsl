@@ -1,5 +1,7 @@
 // Ray queries by themselves: for tests and measurements of traversal.
 
+const NONE: u32 = 0xffffffffu;
+
 struct Ray {
     org: vec3f,
     // Any hit will do.

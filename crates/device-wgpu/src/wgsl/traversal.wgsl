@@ -5,7 +5,6 @@
 // test is T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013. Of hits at the same distance the least triangle index wins,
 // so that answers do not depend on the order of visits.
 
-const NONE: u32 = 0xffffffffu;
 const LEAF: u32 = 0x80000000u;
 const SINGLE_SIDED: u32 = 0x80000000u;
 const FARTHEST: f32 = 0x1.fffffep127f;

@@ -1,5 +1,7 @@
 // The kernels of the wavefront: paths wait in queues, one for each program (thesis, section 4.1).
 
+const NONE: u32 = 0xffffffffu;
+
 struct Settings {
     // Of the image, in pixels.
     width: f32,
