@@ -8,7 +8,7 @@ use std::fmt;
 use residual_render::domain::Domain as _;
 use residual_render::domain::operations::{Answer, Expression, Operation};
 use residual_render::domain::tape::{Op, Outputs, Record, Tape};
-use residual_wgsl::{Arithmetic, Division, Fma, Module, Recorded, SquareRoot};
+use residual_wgsl::{Arithmetic, Division, Fma, Module, Recorded, Selection, SquareRoot};
 use wgpu::{BufferUsages, Features};
 
 use crate::bindings::{Access, group, layout, pipeline_layout};
@@ -201,6 +201,9 @@ impl Gpu {
         }
         // What is wrong may be right in other words.
         let mut arithmetic = native;
+        if !best.answers.has_right(Op::Min) {
+            arithmetic.selection = Selection::Bits;
+        }
         if !FUSES {
             arithmetic.fma = Fma::Unfused;
         }
@@ -209,6 +212,7 @@ impl Gpu {
                 fma: if FUSES { Fma::Double } else { Fma::Unfused },
                 division: Division::Double,
                 square_root: SquareRoot::Double,
+                ..arithmetic
             };
             let double_answers = ask(best.dialect.mode, double)?.answers;
             let is_better = |op| double_answers.wrong_of(op) < best.answers.wrong_of(op);
@@ -223,7 +227,10 @@ impl Gpu {
             }
         }
         if arithmetic != native {
-            best = ask(best.dialect.mode, arithmetic)?;
+            let other = ask(best.dialect.mode, arithmetic)?;
+            if other.answers.wrong() < best.answers.wrong() {
+                best = other;
+            }
         }
         Ok(best)
     }

@@ -25,7 +25,7 @@ use crate::state::{Launched, State, bytes_per_path};
 use crate::wavefront::Wavefront;
 
 /// Paths under way at once: enough to fill a GPU.
-const PATHS: u32 = 1 << 20;
+const PATHS: u32 = 1 << 21;
 
 /// How work is divided into kernels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -239,8 +239,8 @@ pub fn arithmetic(dialect: &Dialect) -> String {
         Mode::Plain => "plain",
     };
     let operations = format!(
-        "fma {:?}, division {:?}, square root {:?}",
-        arithmetic.fma, arithmetic.division, arithmetic.square_root
+        "fma {:?}, division {:?}, square root {:?}, selection of {:?}",
+        arithmetic.fma, arithmetic.division, arithmetic.square_root, arithmetic.selection
     );
     format!("{mode}; {}", operations.to_lowercase())
 }

@@ -175,68 +175,68 @@ fn traverse(org: vec3f, dir: vec3f, tmax: f32, any_hit: bool) -> Hit {
                 //[visits
                 visits += 1u;
                 //]
-                let az = tree[row + kz] - org_z;
-                let bz = tree[row + 3u + kz] - org_z;
-                let cz = tree[row + 6u + kz] - org_z;
-                let ax = (tree[row + kx] - org_x) - slope_x * az;
-                let ay = (tree[row + ky] - org_y) - slope_y * az;
-                let bx = (tree[row + 3u + kx] - org_x) - slope_x * bz;
-                let by = (tree[row + 3u + ky] - org_y) - slope_y * bz;
-                let cx = (tree[row + 6u + kx] - org_x) - slope_x * cz;
-                let cy = (tree[row + 6u + ky] - org_y) - slope_y * cz;
-                let w0 = cx * by;
-                let w1 = cy * bx;
-                let u0 = ax * cy;
-                let u1 = ay * cx;
-                let v0 = bx * ay;
-                let v1 = by * ax;
-                let front = (w0 >= w1) & (u0 >= u1) & (v0 >= v1);
-                let back = (w0 <= w1) & (u0 <= u1) & (v0 <= v1);
-                let inside = front | back;
-                if any(inside) {
-                    let prims = bitcast<vec4u>(tree[row + 9u]);
-                    for (var lane = 0u; lane < 4u; lane++) {
-                        if !inside[lane] || prims[lane] == NONE {
+                for (var lane = 0u; lane < 4u; lane++) {
+                    let marked = bitcast<u32>(tree[row + 9u][lane]);
+                    if marked == NONE {
+                        continue;
+                    }
+                    // Indices of components are resolved in memory: registers have none.
+                    let az = tree[row + kz][lane] - org_z;
+                    let bz = tree[row + 3u + kz][lane] - org_z;
+                    let cz = tree[row + 6u + kz][lane] - org_z;
+                    let ax = (tree[row + kx][lane] - org_x) - slope_x * az;
+                    let ay = (tree[row + ky][lane] - org_y) - slope_y * az;
+                    let bx = (tree[row + 3u + kx][lane] - org_x) - slope_x * bz;
+                    let by = (tree[row + 3u + ky][lane] - org_y) - slope_y * bz;
+                    let cx = (tree[row + 6u + kx][lane] - org_x) - slope_x * cz;
+                    let cy = (tree[row + 6u + ky][lane] - org_y) - slope_y * cz;
+                    let w0 = cx * by;
+                    let w1 = cy * bx;
+                    let u0 = ax * cy;
+                    let u1 = ay * cx;
+                    let v0 = bx * ay;
+                    let v1 = by * ax;
+                    let front = w0 >= w1 && u0 >= u1 && v0 >= v1;
+                    let back = w0 <= w1 && u0 <= u1 && v0 <= v1;
+                    if !(front || back) {
+                        continue;
+                    }
+                    //[sided
+                    if !front && (marked & SINGLE_SIDED) != 0u {
+                        continue;
+                    }
+                    //]
+                    let w = w0 - w1;
+                    let u = u0 - u1;
+                    let v = v0 - v1;
+                    let determinant = (w + u) + v;
+                    if !(determinant <= determinant) {
+                        continue;
+                    }
+                    let scale = quotient(1.0f, determinant);
+                    let height = ((w * scale) * az + (u * scale) * bz) + (v * scale) * cz;
+                    var hit = Hit(height * inverse_z, u * scale, v * scale, marked & ~SINGLE_SIDED);
+                    let sizes = ((abs(w0) + abs(w1)) + (abs(u0) + abs(u1))) + (abs(v0) + abs(v1));
+                    // A triangle seen edge-on; residual-bvh, `watertight.rs`.
+                    if !(sizes + 1e-30f < abs(determinant) * 32.0f) {
+                        let p0 = vec3f(tree[row][lane], tree[row + 1u][lane], tree[row + 2u][lane]);
+                        let p1 = vec3f(tree[row + 3u][lane], tree[row + 4u][lane], tree[row + 5u][lane]);
+                        let p2 = vec3f(tree[row + 6u][lane], tree[row + 7u][lane], tree[row + 8u][lane]);
+                        if !ill_conditioned(org, dir, p0, p1, p2, &hit) {
                             continue;
                         }
-                        //[sided
-                        if !front[lane] && (prims[lane] & SINGLE_SIDED) != 0u {
-                            continue;
-                        }
-                        //]
-                        let w = w0[lane] - w1[lane];
-                        let u = u0[lane] - u1[lane];
-                        let v = v0[lane] - v1[lane];
-                        let determinant = (w + u) + v;
-                        if !(determinant <= determinant) {
-                            continue;
-                        }
-                        let scale = quotient(1.0f, determinant);
-                        let height = ((w * scale) * az[lane] + (u * scale) * bz[lane]) + (v * scale) * cz[lane];
-                        var hit = Hit(height * inverse_z, u * scale, v * scale, prims[lane] & ~SINGLE_SIDED);
-                        let sizes = ((abs(w0[lane]) + abs(w1[lane])) + (abs(u0[lane]) + abs(u1[lane])))
-                            + (abs(v0[lane]) + abs(v1[lane]));
-                        // A triangle seen edge-on; residual-bvh, `watertight.rs`.
-                        if !(sizes + 1e-30f < abs(determinant) * 32.0f) {
-                            let x = vec3f(tree[row][lane], tree[row + 1u][lane], tree[row + 2u][lane]);
-                            let y = vec3f(tree[row + 3u][lane], tree[row + 4u][lane], tree[row + 5u][lane]);
-                            let z = vec3f(tree[row + 6u][lane], tree[row + 7u][lane], tree[row + 8u][lane]);
-                            if !ill_conditioned(org, dir, x, y, z, &hit) {
-                                continue;
-                            }
-                        }
-                        if !(0.0f <= hit.t && hit.t <= best.t) || (hit.t == best.t && hit.prim >= best.prim) {
-                            continue;
-                        }
-                        //[alpha
-                        if !is_there(org, dir, hit) {
-                            continue;
-                        }
-                        //]
-                        best = hit;
-                        if any_hit {
-                            return best;
-                        }
+                    }
+                    if !(0.0f <= hit.t && hit.t <= best.t) || (hit.t == best.t && hit.prim >= best.prim) {
+                        continue;
+                    }
+                    //[alpha
+                    if !is_there(org, dir, hit) {
+                        continue;
+                    }
+                    //]
+                    best = hit;
+                    if any_hit {
+                        return best;
                     }
                 }
                 row += PACKET_ROWS;
@@ -280,20 +280,20 @@ fn traverse(org: vec3f, dir: vec3f, tmax: f32, any_hit: bool) -> Hit {
             child = stack[depth];
             continue;
         }
-        var children = bitcast<vec4u>(tree[node + 6u]);
+        let children = node + 6u;
         if last != NONE {
-            stack[depth] = children[last & 3u];
+            stack[depth] = bitcast<u32>(tree[children][last & 3u]);
             depth += 1u;
         }
         if farther != NONE {
-            stack[depth] = children[farther & 3u];
+            stack[depth] = bitcast<u32>(tree[children][farther & 3u]);
             depth += 1u;
         }
         if nearer != NONE {
-            stack[depth] = children[nearer & 3u];
+            stack[depth] = bitcast<u32>(tree[children][nearer & 3u]);
             depth += 1u;
         }
-        child = children[first & 3u];
+        child = bitcast<u32>(tree[children][first & 3u]);
     }
     return best;
 }
