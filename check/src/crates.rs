@@ -26,14 +26,16 @@ pub const TABLE: &[Row] = &[
     row("residual-metrics", &[]),
     row("residual-bvh", &[]),
     row("residual-render", &["residual-bvh"]),
+    row("residual-wgsl", &["residual-render"]),
     row("residual-scenegen", &["residual-render"]),
     row("residual-device-cpu", &["residual-bvh", "residual-render"]),
+    row(
+        "residual-device-wgpu",
+        &["residual-bvh", "residual-render", "residual-wgsl"],
+    ),
     // Built around emitted code, which uses nothing but the device.
     row("residual-compiled-scene", &["residual-device-cpu"]),
-    row(
-        "residual-frontend",
-        &["residual-bvh", "residual-device-cpu", "residual-render"],
-    ),
+    row("residual-frontend", &["residual-bvh", "residual-render"]),
     row(
         "residual-standalone",
         &[
@@ -46,6 +48,7 @@ pub const TABLE: &[Row] = &[
         "residual-driver",
         &[
             "residual-device-cpu",
+            "residual-device-wgpu",
             "residual-frontend",
             "residual-metrics",
             "residual-render",
@@ -62,6 +65,7 @@ pub const TABLE: &[Row] = &[
             "residual-metrics",
             "residual-render",
             "residual-scenegen",
+            "residual-wgsl",
         ],
     ),
     // Not the benchmarks: what only they need is not built for the command line.
@@ -69,21 +73,37 @@ pub const TABLE: &[Row] = &[
         "xtask",
         &[
             "residual-device-cpu",
+            "residual-device-wgpu",
             "residual-driver",
             "residual-frontend",
             "residual-render",
             "residual-scenegen",
+            "residual-wgsl",
         ],
     ),
+    // With the feature that builds the GPU device.
+    row("xtask-wgpu", &["xtask"]),
     row(
         "residual-tests",
         &[
             "residual-bvh",
             "residual-device-cpu",
+            "residual-device-wgpu",
             "residual-driver",
             "residual-render",
             "residual-scenegen",
+            "residual-wgsl",
             "xtask",
+        ],
+    ),
+    row(
+        "residual-example-embed-wgpu",
+        &[
+            "residual-bvh",
+            "residual-device-wgpu",
+            "residual-render",
+            "residual-scenegen",
+            "residual-wgsl",
         ],
     ),
     row(

@@ -50,6 +50,12 @@ pub enum Error {
         /// Entries that there are.
         available: usize,
     },
+    /// A set of kernels lacks one.
+    #[error("the kernels of the scene lack {name}; emit them anew")]
+    NoKernel {
+        /// Which.
+        name: &'static str,
+    },
     /// A kernel was refused.
     #[error(
         "the kernel {kernel} was refused by {adapter}: {reason}; please report this, and render with --device cpu"

@@ -143,12 +143,18 @@ impl Gpu {
                     .min((1 << 31) - 4),
                 ..limits
             },
-            experimental_features: crate::shader::experimental_features(),
+            experimental_features: crate::experimental::experimental_features(),
             memory_hints: wgpu::MemoryHints::Performance,
             trace: wgpu::Trace::Off,
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| unsuitable(error.to_string()))?;
+        Ok(Self::from_device(device, queue, adapter))
+    }
+
+    /// A device that a program has opened for itself. Its handlers of errors and of loss become ours. What it was opened
+    /// without is done without: exact arithmetic needs `PASSTHROUGH_SHADERS`.
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, adapter: &Adapter) -> Self {
         let faults = Faults::default();
         let note = |faults: &Faults| {
             let faults = Arc::clone(faults);
@@ -166,12 +172,12 @@ impl Gpu {
                 on_loss(format!("the device was lost: {message}"));
             }
         });
-        Ok(Self {
+        Self {
             device,
             queue,
-            adapter: description,
+            adapter: describe(adapter),
             faults,
-        })
+        }
     }
 
     pub(crate) fn has(&self, features: Features) -> bool {

@@ -3,8 +3,6 @@
 use bytemuck::{Pod, Zeroable};
 use residual_render::tracer::TracerOptions;
 
-/// Threads of a workgroup.
-pub(crate) const WORKGROUP: u32 = 64;
 /// Pixels along the side of a block; kernels number pixels block by block.
 const BLOCK: u32 = 8;
 

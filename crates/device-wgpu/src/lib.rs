@@ -7,8 +7,8 @@
 mod bindings;
 mod error;
 mod exact;
+mod experimental;
 mod gpu;
-mod kernels;
 mod launch;
 mod megakernel;
 mod probe;
@@ -24,9 +24,11 @@ mod wavefront;
 pub use error::Error;
 pub use exact::Denormals;
 pub use gpu::{AdapterDescription, Gpu, list_adapters};
-pub use kernels::{Kernels, Traits};
 pub use probe::{Answers, Probe, Question, Tally};
 pub use rays::RayQueries;
-pub use renderer::{Mapping, WgpuRenderer};
-pub use residual_wgsl::Arithmetic;
+pub use renderer::WgpuRenderer;
+pub use residual_wgsl::{Arithmetic, KernelSet, Mapping};
 pub use shader::{Dialect, Mode};
+
+/// The wgpu that programs have to use with this crate.
+pub use wgpu;

@@ -1,10 +1,10 @@
 //! The megakernel: one kernel, in which a thread follows a path to its end.
 
+use residual_wgsl::KernelSet;
 use wgpu::ComputePipeline;
 
 use crate::error::Error;
 use crate::gpu::Gpu;
-use crate::kernels::Kernels;
 use crate::launch::Settings;
 use crate::shader::{Mode, pipeline};
 use crate::stages::Stage;
@@ -21,11 +21,12 @@ impl Megakernel {
     pub(crate) fn new(
         gpu: &Gpu,
         mode: Mode,
-        kernels: &Kernels,
+        kernels: &KernelSet,
         state: &State,
     ) -> Result<Self, Error> {
-        let text = kernels.megakernel();
-        pipeline(gpu, mode, &state.work, &text, "follow_path").map(Self)
+        let name = "megakernel";
+        let text = kernels.text(name).ok_or(Error::NoKernel { name })?;
+        pipeline(gpu, mode, &state.work, text, "follow_path").map(Self)
     }
 
     /// Renders `settings.count` samples, whose `bytes` are to come back through one of the staging buffers.

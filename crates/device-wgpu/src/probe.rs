@@ -8,7 +8,9 @@ use std::fmt;
 use residual_render::domain::Domain as _;
 use residual_render::domain::operations::{Answer, Expression, Operation};
 use residual_render::domain::tape::{Op, Outputs, Record, Tape};
-use residual_wgsl::{Arithmetic, Division, Fma, Module, Recorded, Selection, SquareRoot};
+use residual_wgsl::{
+    Arithmetic, Division, Fma, Module, Recorded, Selection, SquareRoot, WORKGROUP,
+};
 use wgpu::{BufferUsages, Features};
 
 use crate::bindings::{Access, group, layout, pipeline_layout};
@@ -285,8 +287,6 @@ impl Gpu {
 
 /// Whether the processor's domains fuse.
 const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
-/// Threads of a workgroup.
-const WORKGROUP: u32 = 64;
 
 /// A kernel whose workgroups answer one question each, by their second number.
 fn text(questions: &[Question], rows: u32, arithmetic: Arithmetic) -> String {

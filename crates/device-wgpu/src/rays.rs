@@ -1,14 +1,13 @@
 //! Ray queries on a device, apart from any scene.
 
 use residual_bvh::{Bvh, Hit, Ray};
+use residual_wgsl::{WORKGROUP, rays_kernel};
 use wgpu::{BufferUsages, ComputePipeline, Features};
 
 use crate::bindings::Access::{Read, Uniform, Write};
 use crate::bindings::{group, layout, pipeline_layout};
 use crate::error::Error;
 use crate::gpu::Gpu;
-use crate::kernels::rays_kernel;
-use crate::launch::WORKGROUP;
 use crate::shader::{Dialect, pipeline};
 use crate::stages::{Clock, Stage};
 use crate::tree::Tree;

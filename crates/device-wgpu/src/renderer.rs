@@ -1,6 +1,5 @@
 //! A scene on a device, rendered pass by pass into the same film as the processor's.
 
-use std::fmt;
 use std::ops::Range;
 use std::time::Instant;
 
@@ -11,40 +10,21 @@ use residual_render::layer::Layers;
 use residual_render::passes::{Counters, MAX_PASS, Pass};
 use residual_render::program::Structure;
 use residual_render::scene_data::SceneData;
-use residual_render::tracer::{CostMap, DebugView, TracerNode, TracerOptions};
+use residual_render::tracer::{CostMap, TracerOptions};
+use residual_wgsl::{KernelSet, Mapping};
 
 use crate::error::Error;
 use crate::gpu::Gpu;
-use crate::kernels::{Kernels, Traits};
 use crate::launch::{Places, Settings};
 use crate::megakernel::Megakernel;
 use crate::scene::Scene;
-use crate::shader::Dialect;
+use crate::shader::{Dialect, Mode};
 use crate::stages::{Stage, StageSeconds};
 use crate::state::{Launched, State, bytes_per_path};
 use crate::wavefront::Wavefront;
 
 /// Paths under way at once: enough to fill a GPU.
 const PATHS: u32 = 1 << 21;
-
-/// How work is divided into kernels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mapping {
-    /// A kernel for each kind of work, between which paths wait in queues.
-    #[default]
-    Wavefront,
-    /// One kernel, in which a thread follows a path to its end.
-    Megakernel,
-}
-
-impl fmt::Display for Mapping {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Wavefront => "wavefront",
-            Self::Megakernel => "megakernel",
-        })
-    }
-}
 
 /// Renders a scene on a GPU.
 pub struct WgpuRenderer<'g> {
@@ -79,27 +59,37 @@ impl<'g> WgpuRenderer<'g> {
         bvh: &Bvh<4>,
         size: [u32; 2],
     ) -> Result<Self, Error> {
-        let (layers, stride) = (structure.layers, structure.layers.stride());
-        let shows_traversal = structure.tracer == TracerNode::Debug(DebugView::TraversalCost);
-        let traits = Traits {
-            sided: data.single_sided.contains(&true),
-            visits: shows_traversal,
-            f64: gpu.has(wgpu::Features::SHADER_F64),
-        };
-        let kernels = Kernels::new(structure, traits, dialect.arithmetic);
+        let sided = data.single_sided.contains(&true);
+        let f64 = gpu.has(wgpu::Features::SHADER_F64);
+        let kernels = KernelSet::new(structure, mapping, sided, f64, dialect.arithmetic);
+        Self::with_kernels(gpu, dialect.mode, &kernels, data, bvh, size)
+    }
+
+    /// As [`new`](Self::new), with kernels that were made before.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_kernels(
+        gpu: &'g Gpu,
+        mode: Mode,
+        kernels: &KernelSet,
+        data: &SceneData,
+        bvh: &Bvh<4>,
+        size: [u32; 2],
+    ) -> Result<Self, Error> {
+        let (layers, stride) = (kernels.layers, kernels.layers.stride());
         let places = Places::new(size);
         let slots = slots(gpu, places, stride);
-        let queued = match mapping {
+        let queued = match kernels.mapping {
             Mapping::Wavefront => slots,
             Mapping::Megakernel => 1,
         };
         let scene = Scene::new(gpu, data, bvh)?;
-        let state = State::new(gpu, &scene, kernels.queues(), slots, queued, stride);
-        let mode = dialect.mode;
-        let compiled = match mapping {
-            Mapping::Wavefront => Compiled::Wavefront(Wavefront::new(gpu, mode, &kernels, &state)?),
+        let state = State::new(gpu, &scene, kernels.queues, slots, queued, stride);
+        let compiled = match kernels.mapping {
+            Mapping::Wavefront => Compiled::Wavefront(Wavefront::new(gpu, mode, kernels, &state)?),
             Mapping::Megakernel => {
-                Compiled::Megakernel(Megakernel::new(gpu, mode, &kernels, &state)?)
+                Compiled::Megakernel(Megakernel::new(gpu, mode, kernels, &state)?)
             }
         };
         gpu.check()?;
@@ -109,7 +99,7 @@ impl<'g> WgpuRenderer<'g> {
             state,
             places,
             layers,
-            cost_map: shows_traversal.then_some(CostMap),
+            cost_map: kernels.shows_traversal.then_some(CostMap),
             slots,
             first_packet: scene.first_packet,
             memory: scene.bytes + u64::from(slots) * bytes_per_path(stride),

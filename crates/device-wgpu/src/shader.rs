@@ -27,13 +27,6 @@ pub struct Dialect {
     pub arithmetic: Arithmetic,
 }
 
-/// wgpu's consent to features that it calls experimental: shaders that it does not translate.
-pub(crate) fn experimental_features() -> wgpu::ExperimentalFeatures {
-    // SAFETY: the only experimental feature that is asked for is passing shaders through, and `module` says what makes
-    // them sound.
-    unsafe { wgpu::ExperimentalFeatures::enabled() }
-}
-
 fn module(gpu: &Gpu, mode: Mode, text: &str) -> Result<ShaderModule, String> {
     match mode {
         Mode::Exact(denormals) => {

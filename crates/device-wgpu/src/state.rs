@@ -3,14 +3,14 @@
 use std::sync::{Arc, Mutex};
 
 use bytemuck::Zeroable;
-use residual_wgsl::Binding;
+use residual_wgsl::{Binding, WORKGROUP};
 use wgpu::{BindGroup, BufferUsages, CommandEncoder, PipelineLayout};
 
 use crate::bindings::Access::{Read, Uniform, Write};
 use crate::bindings::{group, layout, pipeline_layout};
 use crate::error::Error;
 use crate::gpu::Gpu;
-use crate::launch::{Settings, WORKGROUP};
+use crate::launch::Settings;
 use crate::scene::Scene;
 use crate::stages::{Clock, Laps, StageSeconds};
 

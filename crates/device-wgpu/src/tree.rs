@@ -1,11 +1,9 @@
 //! A hierarchy as kernels read it: rows of four numbers, four boxes a node and four triangles a packet.
 
 use residual_bvh::Bvh;
+use residual_wgsl::STACK;
 
 use crate::error::Error;
-
-/// Entries of a kernel's stack.
-pub(crate) const STACK: usize = 64;
 
 /// A hierarchy in rows.
 pub(crate) struct Tree {

@@ -1,11 +1,11 @@
 //! The wavefront: kernels of one kind of work each, between which paths wait in queues.
 
 use rayon::prelude::*;
+use residual_wgsl::KernelSet;
 use wgpu::{ComputePass, ComputePipeline};
 
 use crate::error::Error;
 use crate::gpu::Gpu;
-use crate::kernels::Kernels;
 use crate::launch::Settings;
 use crate::shader::{Mode, pipeline};
 use crate::stages::{Laps, Stage, StageSeconds};
@@ -33,24 +33,23 @@ impl Wavefront {
     pub(crate) fn new(
         gpu: &Gpu,
         mode: Mode,
-        kernels: &Kernels,
+        kernels: &KernelSet,
         state: &State,
     ) -> Result<Self, Error> {
-        let work = |text: String, entry: &str| pipeline(gpu, mode, &state.work, &text, entry);
-        let between = |entry: &str| pipeline(gpu, mode, &state.between, &kernels.control(), entry);
-        let queues: Vec<_> = kernels.queues_with_steps().collect();
-        let shade = || {
-            let shade = |&queue: &usize| Ok((queue, work(kernels.shade(queue), "shade")?));
-            queues.par_iter().map(shade).collect()
-        };
-        let trace = || work(kernels.trace(), "trace");
+        let text = |name: &'static str| kernels.text(name).ok_or_else(|| Error::NoKernel { name });
+        let work = |text: &str, entry: &str| pipeline(gpu, mode, &state.work, text, entry);
+        let control = text("control")?;
+        let between = |entry: &str| pipeline(gpu, mode, &state.between, control, entry);
+        let shade: Vec<_> = kernels.shade().collect();
+        let compile = |&(queue, text): &(usize, &str)| Ok((queue, work(text, "shade")?));
+        let shade = || -> Result<Vec<_>, Error> { shade.par_iter().map(compile).collect() };
         // The longest first.
-        let (trace, shade): (_, Result<_, Error>) = rayon::join(trace, shade);
+        let (trace, shade) = rayon::join(|| work(text("trace")?, "trace"), shade);
         Ok(Self {
-            emit: work(kernels.emit(), "emit_paths")?,
+            emit: work(text("emit")?, "emit_paths")?,
             trace: trace?,
             plan: between("plan")?,
-            scatter: work(kernels.scatter(), "scatter")?,
+            scatter: work(text("scatter")?, "scatter")?,
             shade: shade?,
             turn: between("turn")?,
         })

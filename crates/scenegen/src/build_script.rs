@@ -52,23 +52,36 @@ pub enum BuildScriptError {
 /// # Errors
 /// If the scene cannot be imported or planned, or the file not written.
 pub fn generate(scene: impl AsRef<Path>, options: &PlanOptions) -> Result<(), BuildScriptError> {
+    let directory = PathBuf::from(variable("OUT_DIR")?);
+    // Targets without any features have no such variable.
+    let lanes = lanes(&variable("CARGO_CFG_TARGET_FEATURE").unwrap_or_default());
+    let plan = plan_scene(scene, options)?;
+    let file = directory.join(FILE_NAME);
+    fs::write(&file, rust::module(&plan, lanes))
+        .map_err(|source| BuildScriptError::Write { file, source })
+}
+
+/// The plan of a scene, for build scripts that emit something else of it; tells cargo which files it depends on, and passes
+/// warnings on.
+///
+/// # Errors
+/// If the scene cannot be imported or planned.
+pub fn plan_scene(
+    scene: impl AsRef<Path>,
+    options: &PlanOptions,
+) -> Result<Plan, BuildScriptError> {
     let scene = scene.as_ref();
     // First of all: cargo has to look at them again after a failure, too.
     for file in dependencies(scene) {
         println!("cargo::rerun-if-changed={}", file.display());
     }
-    let directory = PathBuf::from(variable("OUT_DIR")?);
-    // Targets without any features have no such variable.
-    let lanes = lanes(&variable("CARGO_CFG_TARGET_FEATURE").unwrap_or_default());
     let (plan, warnings) = load(scene, options)?;
     for Warning { place, message, .. } in &warnings {
         // A line break would end the instruction, and the rest might be another one.
         let text = format!("{}: {place}: {message}", scene.display()).replace(['\r', '\n'], " ");
         println!("cargo::warning={text}");
     }
-    let file = directory.join(FILE_NAME);
-    fs::write(&file, rust::module(&plan, lanes))
-        .map_err(|source| BuildScriptError::Write { file, source })
+    Ok(plan)
 }
 
 fn variable(name: &'static str) -> Result<String, BuildScriptError> {

@@ -1,7 +1,8 @@
-//! A renderer's structure as WGSL.
+//! A renderer's structure as WGSL: the functions of its formulas, and the kernels that call them.
 //!
-//! Every function is recorded from the formulas of `residual-render` (thesis, section 3.1); none is written here. Devices
-//! call them from kernels of their own: [`SceneFunctions`] has what a structure calls for, [`Module`] the text around it.
+//! Every function is recorded from the formulas of `residual-render` (thesis, section 3.1): [`SceneFunctions`] has what a
+//! structure calls for, [`Module`] the text around it. Written by hand are traversal and scheduling only (section 4.1), in
+//! `wgsl/`; [`KernelSet`] has the kernels of a scene.
 //!
 //! Printed text keeps the contract of [`Domain`](residual_render::domain::Domain) as far as WGSL allows, and an
 //! [`Arithmetic`] says how operations are spelled that adapters round differently.
@@ -9,6 +10,8 @@
 mod arithmetic;
 mod bindings;
 mod functions;
+mod kernel_set;
+mod kernels;
 mod module;
 mod names;
 mod print;
@@ -16,6 +19,8 @@ mod print;
 pub use arithmetic::{Arithmetic, Division, Fma, Selection, SquareRoot};
 pub use bindings::Binding;
 pub use functions::{ProgramFunctions, Recorded, SceneFunctions};
+pub use kernel_set::{KernelSet, Mapping};
+pub use kernels::{Kernels, STACK, Traits, WORKGROUP, rays_kernel};
 pub use module::Module;
 
 use residual_render::domain::tape::Function;

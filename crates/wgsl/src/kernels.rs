@@ -2,10 +2,15 @@
 
 use residual_render::layer::{Layer, Layers};
 use residual_render::program::Structure;
-use residual_wgsl::{Arithmetic, Module, Recorded, SceneFunctions};
 
-use crate::launch::WORKGROUP;
-use crate::tree::STACK;
+use crate::arithmetic::Arithmetic;
+use crate::functions::{Recorded, SceneFunctions};
+use crate::module::Module;
+
+/// Threads of a workgroup.
+pub const WORKGROUP: u32 = 64;
+/// Nodes that wait on a thread's stack.
+pub const STACK: usize = 64;
 
 const WAVEFRONT: &str = include_str!("wgsl/wavefront.wgsl");
 const CONTROL: &str = include_str!("wgsl/control.wgsl");
@@ -34,7 +39,7 @@ pub struct Traits {
     pub sided: bool,
     /// The image shows what traversal visits.
     pub visits: bool,
-    /// The adapter computes in `f64`.
+    /// Hits on triangles seen edge-on are computed in `f64`, which adapters need not have.
     pub f64: bool,
 }
 
@@ -293,7 +298,7 @@ fn shade(
 }
 
 /// `trace_rays`: ray queries, apart from any scene.
-pub(crate) fn rays_kernel(arithmetic: Arithmetic, f64: bool) -> String {
+pub fn rays_kernel(arithmetic: Arithmetic, f64: bool) -> String {
     let mut module = Module::new(arithmetic);
     module.add_text(&format!(
         "const WORKGROUP: u32 = {WORKGROUP}u;\nconst STACK: u32 = {STACK}u;\n"

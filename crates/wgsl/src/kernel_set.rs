@@ -1,0 +1,157 @@
+//! All kernels of a scene, by name: what a device loads, and a build script writes down.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Write};
+use std::str::FromStr;
+
+use residual_render::layer::Layers;
+use residual_render::program::Structure;
+use residual_render::tracer::{DebugView, TracerNode};
+
+use crate::arithmetic::Arithmetic;
+use crate::kernels::{Kernels, Traits};
+
+/// How work is divided into kernels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mapping {
+    /// A kernel for each kind of work, between which paths wait in queues.
+    #[default]
+    Wavefront,
+    /// One kernel, in which a thread follows a path to its end.
+    Megakernel,
+}
+
+impl Mapping {
+    const ALL: [Self; 2] = [Self::Wavefront, Self::Megakernel];
+}
+
+impl fmt::Display for Mapping {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Wavefront => "wavefront",
+            Self::Megakernel => "megakernel",
+        })
+    }
+}
+
+/// The kernels of a scene, and what a device has to know of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KernelSet {
+    /// How work is divided.
+    pub mapping: Mapping,
+    /// What a sample has beside radiance.
+    pub layers: Layers,
+    /// The image is of what traversal visits: a sample is their number.
+    pub shows_traversal: bool,
+    /// Queues of hits: one a program, and one of rays that hit nothing.
+    pub queues: usize,
+    texts: BTreeMap<String, String>,
+}
+
+impl KernelSet {
+    /// The kernels of a structure, with operations spelled for an adapter.
+    pub fn new(
+        structure: &Structure,
+        mapping: Mapping,
+        sided: bool,
+        f64: bool,
+        arithmetic: Arithmetic,
+    ) -> Self {
+        let shows_traversal = structure.tracer == TracerNode::Debug(DebugView::TraversalCost);
+        let traits = Traits {
+            sided,
+            visits: shows_traversal,
+            f64,
+        };
+        let kernels = Kernels::new(structure, traits, arithmetic);
+        let mut texts = BTreeMap::new();
+        match mapping {
+            Mapping::Wavefront => {
+                texts.insert("control".to_owned(), kernels.control());
+                texts.insert("emit".to_owned(), kernels.emit());
+                texts.insert("scatter".to_owned(), kernels.scatter());
+                texts.insert("trace".to_owned(), kernels.trace());
+                for queue in kernels.queues_with_steps() {
+                    texts.insert(format!("shade {queue}"), kernels.shade(queue));
+                }
+            }
+            Mapping::Megakernel => {
+                texts.insert("megakernel".to_owned(), kernels.megakernel());
+            }
+        }
+        Self {
+            mapping,
+            layers: structure.layers,
+            shows_traversal,
+            queues: kernels.queues(),
+            texts,
+        }
+    }
+
+    /// The text of a kernel: `emit`, `trace`, `control`, `scatter`, or `megakernel`.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.texts.get(name).map(String::as_str)
+    }
+
+    /// The kernels that shade, each with its queue.
+    pub fn shade(&self) -> impl Iterator<Item = (usize, &str)> {
+        (0..self.queues).filter_map(|queue| Some((queue, self.text(&format!("shade {queue}"))?)))
+    }
+
+    /// The names of all kernels with their texts.
+    pub fn texts(&self) -> impl Iterator<Item = (&str, &str)> {
+        let texts = self.texts.iter();
+        texts.map(|(name, text)| (name.as_str(), text.as_str()))
+    }
+}
+
+const HEAD: &str = "// residual kernels, version 1: ";
+const KERNEL: &str = "// kernel: ";
+
+/// One text, which is read back.
+impl fmt::Display for KernelSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut text = format!(
+            "{HEAD}{} {} {} {}\n",
+            self.mapping,
+            self.layers.bits(),
+            u8::from(self.shows_traversal),
+            self.queues
+        );
+        for (name, kernel) in &self.texts {
+            let _ = write!(text, "{KERNEL}{name}\n{kernel}");
+        }
+        f.write_str(&text)
+    }
+}
+
+impl FromStr for KernelSet {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let error =
+            |what: &str| format!("these are no kernels of this version: {what}; emit them anew");
+        let (head, rest) = text.split_once('\n').unwrap_or((text, ""));
+        let head = head
+            .strip_prefix(HEAD)
+            .ok_or_else(|| error("the first line"))?;
+        let words: Vec<&str> = head.split(' ').collect();
+        let [mapping, layers, shows_traversal, queues] = words[..] else {
+            return Err(error("the first line"));
+        };
+        let mapping = Mapping::ALL.into_iter().find(|m| m.to_string() == mapping);
+        let number = |word: &str| word.parse::<u32>().map_err(|_| error("a number"));
+        let mut texts = BTreeMap::new();
+        for kernel in rest.split(KERNEL).skip(1) {
+            let (name, text) = kernel.split_once('\n').ok_or_else(|| error("a kernel"))?;
+            texts.insert(name.to_owned(), text.to_owned());
+        }
+        Ok(Self {
+            mapping: mapping.ok_or_else(|| error("the mapping"))?,
+            layers: Layers::from_bits(number(layers)?),
+            shows_traversal: number(shows_traversal)? != 0,
+            queues: number(queues)? as usize,
+            texts,
+        })
+    }
+}
