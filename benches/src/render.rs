@@ -1,10 +1,10 @@
 //! Whole renders: contenders in turn, round by round, and what the times say.
 
-use residual_render::passes::{Counters, RenderOptions};
 use std::ops::ControlFlow;
 
 use residual_device_cpu::{CpuDevice, SceneView, TileRenderer};
 use residual_metrics::Estimate;
+use residual_render::passes::{Counters, RenderOptions};
 use serde_json::{Value, json};
 
 /// One way to render a scene.

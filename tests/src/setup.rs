@@ -1,6 +1,5 @@
 //! From a description to a film.
 
-use residual_render::passes::RenderOptions;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +8,7 @@ use residual_device_cpu::{
     AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileRenderer, Traversal,
 };
 use residual_render::film::Film;
+use residual_render::passes::RenderOptions;
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::import::{EnvironmentOptions, ImportError, ImportOptions, import};
 use residual_scenegen::plan::Plan;

@@ -1,6 +1,5 @@
 //! Whole renders whose radiance is known (hard case L-12): the interpreter on the CPU device, hand-made scenes.
 
-use residual_render::passes::RenderOptions;
 use std::ops::ControlFlow;
 
 use residual_bvh::BuildQuality;
@@ -10,6 +9,7 @@ use residual_render::camera::CameraRecord;
 use residual_render::film::Film;
 use residual_render::layer::Layers;
 use residual_render::light::{AreaRecord, push_light, set_picks};
+use residual_render::passes::RenderOptions;
 use residual_render::program::{
     BsdfNode, CameraNode, ColorNode, EmissionNode, InputNode, LightNode, Program, SourceNode,
     Structure,

@@ -1,10 +1,10 @@
 //! The device by itself: every sample of every pixel is taken once, however paths share a stream, and a render ends when
 //! it is told to.
 
-use residual_render::passes::{Counters, RenderOptions};
 use std::ops::ControlFlow;
 
 use residual_device_cpu::{CpuDevice, LaneCount, TileJob, TileRenderer};
+use residual_render::passes::{Counters, RenderOptions};
 use residual_render::tracer::TracerOptions;
 use residual_scenegen::desc::{MaterialDesc, Projection, SceneDesc};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};

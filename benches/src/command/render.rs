@@ -1,6 +1,5 @@
 //! `cargo xtask bench render`: whole renders, specialised and interpreted, with our traversal and with Embree's.
 
-use residual_render::passes::RenderOptions;
 use std::path::Path;
 
 use crate::embree::{Embree, EmbreeScene, EmbreeTraversal, Quality};
@@ -12,6 +11,7 @@ use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, Traversal};
 use residual_driver::compile;
 use residual_frontend::hierarchy_quality;
+use residual_render::passes::RenderOptions;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, plan};
 

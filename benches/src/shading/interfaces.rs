@@ -1,7 +1,6 @@
 //! Which interface's specialisation is worth what (thesis, Figure 3.5): a textured dielectric coat whose textures, and whose
 //! vertex attributes, are known to the compiler or not.
 
-use residual_render::passes::Counters;
 use std::hint::black_box;
 
 use residual_device_cpu::{LaneCount, SceneView, TileJob, TileRenderer, render_lanes};
@@ -12,6 +11,7 @@ use residual_render::layer::Layers;
 use residual_render::light::Point;
 use residual_render::material::{Material, Shading};
 use residual_render::math::{Color, Vec3};
+use residual_render::passes::Counters;
 use residual_render::program::{ColorNode, ImageNode, Program, ScalarNode, SourceNode};
 use residual_render::renderer::{MaterialVisitor, Renderer};
 use residual_render::sampler::Sobol;

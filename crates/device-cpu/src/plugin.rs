@@ -3,13 +3,13 @@
 //! The boundary is C: one function that renders a tile, with pointers and lengths, and one that says what the library
 //! was made for. No Rust type with an unspecified layout crosses it.
 
-use residual_render::passes::Counters;
 use std::ffi::{OsStr, c_void};
 use std::{fmt, ptr, slice};
 
 use residual_bvh::{Hit, Ray};
 use residual_render::domain::{Buffer, Buffers};
 use residual_render::layer::Layers;
+use residual_render::passes::Counters;
 
 use crate::job::{SceneView, TileJob, TileRenderer};
 use crate::lanes::LaneCount;

@@ -1,11 +1,11 @@
 //! One tile: from camera rays to radiance. The whole life of its paths is in [`render_tile`].
 
-use residual_render::passes::Counters;
 use std::time::Instant;
 
 use residual_bvh::{Hit, Ray};
 use residual_render::alpha::Candidate;
 use residual_render::domain::Lanes;
+use residual_render::passes::Counters;
 use residual_render::renderer::Renderer;
 use residual_render::tracer::{Settings, Tracer};
 use residual_render::triangle::program_in;

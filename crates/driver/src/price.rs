@@ -4,7 +4,6 @@
 //! own that all variants share: so only what an effect changes differs. Effects that are out and that other paths would
 //! have to ask about (alpha, kinds of lights) are put in, without use, and must not change the image.
 
-use residual_render::passes::{Progress, RenderOptions};
 use std::ops::ControlFlow;
 
 use anyhow::{Context, Result};
@@ -12,6 +11,7 @@ use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileRenderer};
 use residual_frontend::{hierarchy_quality, process_time};
 use residual_metrics::{Estimate, Jackknifed, flip, relative_mse};
+use residual_render::passes::{Progress, RenderOptions};
 use residual_render::program::{AlphaTestNode, BsdfNode, LightNode, Program, ScalarNode};
 use residual_render::surface::Attributes;
 use residual_scenegen::ablation::{instead, without};

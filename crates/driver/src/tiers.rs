@@ -1,6 +1,5 @@
 //! Tiers: interpreted from the first second, compiled as soon as the compiler is done.
 
-use residual_render::passes::Progress;
 use std::cell::RefCell;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -10,6 +9,7 @@ use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{Interpreter, LaneCount, TileRenderer};
 use residual_frontend::process_time;
 use residual_frontend::stats::TierReport;
+use residual_render::passes::Progress;
 use residual_scenegen::plan::Plan;
 
 use crate::compile::{Compiler, Origin};

@@ -1,11 +1,11 @@
 //! Options of a render, as arguments.
 
-use residual_render::passes::RenderOptions;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use residual_render::passes::RenderOptions;
 
 const DEFAULT_SAMPLES: u32 = 64;
 

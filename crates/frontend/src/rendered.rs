@@ -1,9 +1,9 @@
 //! What a render yields.
 
-use residual_render::passes::RenderReport;
 use std::time::Duration;
 
 use residual_render::film::Film;
+use residual_render::passes::RenderReport;
 
 /// The image, and what it took.
 pub struct Rendered {

@@ -1,6 +1,5 @@
 //! A render as people see it: progress, images on the way, Ctrl-C, the image at the end.
 
-use residual_render::passes::{Counters, Pass, Progress, RenderOptions, render_passes};
 use std::ffi::OsStr;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -12,6 +11,7 @@ use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use residual_render::film::{Film, TILE_SIZE};
 use residual_render::layer::Layers;
+use residual_render::passes::{Counters, Pass, Progress, RenderOptions, render_passes};
 
 use crate::options::{RenderArgs, StatsFormat};
 use crate::output::{self, Metadata};

@@ -1,12 +1,12 @@
 //! Renders the Cornell box with a renderer that was compiled in: `residual-example-embed [IMAGE.png]`.
 
-use residual_render::passes::RenderOptions;
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use anyhow::{Context, Result};
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, CpuDevice, SceneView};
+use residual_render::passes::RenderOptions;
 use residual_render::texture::srgb_code;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::plan;

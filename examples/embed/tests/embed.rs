@@ -1,6 +1,5 @@
 //! The compiled-in renderer is the interpreter's equal, generated the same every time, and refuses foreign data.
 
-use residual_render::passes::RenderOptions;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
@@ -8,6 +7,7 @@ use std::process::Command;
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, SceneView, TileRenderer};
 use residual_render::film::Film;
+use residual_render::passes::RenderOptions;
 use residual_render::sampler::AnySampler;
 use residual_scenegen::emit::rust;
 use residual_scenegen::import::{ImportOptions, import};
