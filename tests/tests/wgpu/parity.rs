@@ -1,0 +1,254 @@
+//! Samples of the GPU have the processor's bits, where the adapter's arithmetic is exact. It rests on the same formulas in the
+//! same order, on hits that do not depend on the hierarchy, and on samples that are added up in their order.
+
+use std::path::Path;
+
+use residual_device_wgpu::{Mapping, Mode};
+use residual_render::layer::{Layer, Layers};
+use residual_render::tracer::{DebugView, TracerNode};
+use residual_scenegen::plan::{PlanOptions, plan};
+use residual_tests::{Look, fixtures, read_scene, scene_files, scenes, tiny};
+
+use crate::exact_machine;
+use crate::subject::{Subject, difference};
+
+const MAPPINGS: [Mapping; 2] = [Mapping::Wavefront, Mapping::Megakernel];
+
+/// Files that are larger make tests wait for importers, scenes of more triangles for hierarchies.
+const LARGEST: u64 = 20 << 20;
+const MOST_TRIANGLES: usize = 1_000_000;
+
+/// A file's scene at 64 × 64; under a sky, if it would be dark.
+///
+/// # Errors
+/// With the reason why it is not rendered.
+fn subject_of(file: &Path, sky: &Path) -> Result<Subject, String> {
+    if file.metadata().expect("a file").len() > LARGEST {
+        return Err("the file is large".to_owned());
+    }
+    let planned = |environment| {
+        let scene = read_scene(file, environment).map_err(|error| error.to_string())?;
+        let options = PlanOptions {
+            size: [64; 2],
+            ..PlanOptions::default()
+        };
+        plan(&scene, &options).map_err(|error| error.to_string())
+    };
+    let mut of_file = planned(None)?;
+    if of_file.structure.lights.is_empty() {
+        of_file = planned(Some(sky.to_owned()))?;
+    }
+    match of_file.data.triangle_count() {
+        count if count > MOST_TRIANGLES => Err(format!("{count} triangles")),
+        _ => Ok(Subject::new(of_file)),
+    }
+}
+
+/// Every shared scene of a folder, as a wavefront.
+fn check_folder(folder: &str, at_least: usize) {
+    let (Some(machine), Some(scenes)) = (exact_machine(), scenes()) else {
+        return;
+    };
+    let sky = scenes.join("env/sky.hdr");
+    let mut rendered = 0;
+    for file in scene_files(&scenes.join(folder)) {
+        match subject_of(&file, &sky) {
+            Ok(subject) => {
+                subject.agrees(machine, Mapping::Wavefront, &Look::new([64; 2], 2));
+                rendered += 1;
+            }
+            Err(reason) => println!("skipped: {}: {reason}", file.display()),
+        }
+    }
+    assert!(rendered >= at_least, "{rendered} scenes in {folder}");
+}
+
+#[test]
+fn interiors() {
+    check_folder("interiors", 7);
+}
+
+#[test]
+fn scenes_of_benchmarks() {
+    check_folder("bench", 6);
+}
+
+#[test]
+fn scenes_of_materials() {
+    check_folder("materials", 25);
+}
+
+/// Every kind of surface, texture, light, camera and sampler, in both mappings. The size is no multiple of a block.
+#[test]
+fn tiny_scenes_in_both_mappings() {
+    let Some(machine) = exact_machine() else {
+        return;
+    };
+    for tiny in tiny::all() {
+        let subject = Subject::new(tiny.plan());
+        for mapping in MAPPINGS {
+            subject.agrees(machine, mapping, &Look::new(tiny::SIZE, 3));
+        }
+    }
+}
+
+#[test]
+fn paths_of_any_length() {
+    let Some(machine) = exact_machine() else {
+        return;
+    };
+    // Between two looks at whether any path is left, the device takes sixteen vertices.
+    for max_depth in [1, 2, 16, 17, 20] {
+        let look = Look {
+            max_depth,
+            seed: 7,
+            ..Look::new([23, 17], 3)
+        };
+        let options = PlanOptions {
+            size: look.size,
+            ..PlanOptions::default()
+        };
+        for scene in [fixtures::room(), fixtures::lights()] {
+            let subject = Subject::of(&scene, &options);
+            for mapping in MAPPINGS {
+                subject.agrees(machine, mapping, &look);
+            }
+        }
+    }
+}
+
+/// Smaller than a block, as wide as one, one more.
+#[test]
+fn images_of_any_size() {
+    let Some(machine) = exact_machine() else {
+        return;
+    };
+    for size in [[1, 1], [3, 5], [8, 8], [65, 9], [7, 130]] {
+        let options = PlanOptions {
+            size,
+            ..PlanOptions::default()
+        };
+        let subject = Subject::of(&fixtures::room(), &options);
+        for mapping in MAPPINGS {
+            subject.agrees(machine, mapping, &Look::new(size, 2));
+        }
+    }
+}
+
+/// More pixels than there may be paths under way (2²⁰), so that a sample is put together from two launches.
+#[test]
+fn a_sample_of_two_launches() {
+    let Some(machine) = exact_machine() else {
+        return;
+    };
+    let size = [1041, 1013];
+    let options = PlanOptions {
+        size,
+        ..PlanOptions::default()
+    };
+    let subject = Subject::of(&tiny::plain().scene, &options);
+    for mapping in MAPPINGS {
+        let look = Look {
+            max_depth: 2,
+            ..Look::new(size, 1)
+        };
+        subject.agrees(machine, mapping, &look);
+    }
+}
+
+/// Every tracer, with and without all layers. What traversal costs depends on the hierarchy, and is not compared here.
+#[test]
+fn tracers_and_layers() {
+    let Some(machine) = exact_machine() else {
+        return;
+    };
+    let views = DebugView::ALL.into_iter();
+    let views = views
+        .filter(|&view| view != DebugView::TraversalCost)
+        .map(TracerNode::Debug);
+    let tracers = [TracerNode::Path, TracerNode::AmbientOcclusion];
+    let size = [37, 29];
+    for tracer in tracers.into_iter().chain(views) {
+        for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
+            let options = PlanOptions {
+                size,
+                tracer,
+                layers,
+                ..PlanOptions::default()
+            };
+            let look = Look {
+                reach: 2.0,
+                ..Look::new(size, 3)
+            };
+            for scene in [fixtures::textures(), fixtures::room()] {
+                let subject = Subject::of(&scene, &options);
+                for mapping in MAPPINGS {
+                    subject.agrees(machine, mapping, &look);
+                }
+            }
+        }
+    }
+}
+
+/// The heat map has colours of rays that visit something, and more than one.
+#[test]
+fn the_heat_map_is_of_visits() {
+    let Some(machine) = exact_machine() else {
+        return;
+    };
+    let look = Look::new([40, 30], 2);
+    let options = PlanOptions {
+        size: look.size,
+        tracer: TracerNode::Debug(DebugView::TraversalCost),
+        ..PlanOptions::default()
+    };
+    let subject = Subject::of(&fixtures::room(), &options);
+    let films = MAPPINGS.map(|mapping| subject.on_gpu(machine, mapping, &look));
+    assert_eq!(difference(&films[0], &films[1]), None);
+    let mut colors: Vec<_> = films[0]
+        .image()
+        .into_iter()
+        .map(|rgb| rgb.map(f32::to_bits))
+        .collect();
+    colors.sort_unstable();
+    colors.dedup();
+    assert!(colors.len() > 8, "{} colours", colors.len());
+    // The processor's hierarchy is another, but no less or more than a few times as good.
+    let [gpu, cpu] = [&films[0], &subject.on_cpu(&look)].map(|film| film.mean().iter().sum::<f64>());
+    assert!(gpu > 0.3 * cpu && gpu < 3.0 * cpu, "{gpu} and {cpu}");
+}
+
+/// Neither a run nor the passes into which samples are divided show.
+#[test]
+fn runs_and_passes_do_not_show() {
+    let Some(machine) = exact_machine() else {
+        return;
+    };
+    let look = Look::new([21, 15], 4);
+    let options = PlanOptions {
+        size: look.size,
+        layers: Layer::ALL.into_iter().collect(),
+        ..PlanOptions::default()
+    };
+    let subject = Subject::of(&fixtures::room(), &options);
+    for mapping in MAPPINGS {
+        let renderer = subject.renderer(machine, machine.probe.dialect, mapping, look.size);
+        let expected = subject.passes(&renderer, &look, &[4]);
+        for groups in [&[4][..], &[1, 3], &[1; 4]] {
+            let film = subject.passes(&renderer, &look, groups);
+            assert_eq!(difference(&expected, &film), None, "{mapping}, {groups:?}");
+        }
+        let other = Look { seed: 1, ..look };
+        let film = subject.passes(&renderer, &other, &[4]);
+        assert!(difference(&expected, &film).is_some(), "seeds show");
+    }
+}
+
+/// Plain WGSL is not what the probe has chosen on an adapter that is exact: else nothing was tested here.
+#[test]
+fn exact_kernels_are_passed_through() {
+    let Some(machine) = exact_machine() else {
+        return;
+    };
+    assert_eq!(machine.probe.dialect.mode, Mode::Exact);
+}

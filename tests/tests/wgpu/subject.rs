@@ -1,0 +1,124 @@
+//! Something to render, on either device.
+
+use residual_bvh::BuildQuality;
+use residual_device_cpu::{AnyBvh, LaneCount};
+use residual_device_wgpu::{Dialect, Mapping, WgpuRenderer};
+use residual_render::film::{Film, TILE_SIZE};
+use residual_render::passes::{MAX_PASS, Pass, RenderOptions};
+use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::plan::{Plan, PlanOptions, plan};
+use residual_tests::pictures::first_difference;
+use residual_tests::{Look, Prepared};
+
+use crate::Machine;
+
+/// A plan with the hierarchy that GPUs traverse.
+pub(crate) struct Subject {
+    pub(crate) plan: Plan,
+    bvh: AnyBvh,
+}
+
+impl Subject {
+    pub(crate) fn new(plan: Plan) -> Self {
+        let bvh = AnyBvh::build(&plan.data, LaneCount::Four, BuildQuality::Fast);
+        Self { plan, bvh }
+    }
+
+    /// A scene, planned for an image of this size.
+    pub(crate) fn of(scene: &SceneDesc, options: &PlanOptions) -> Self {
+        Self::new(plan(scene, options).unwrap_or_else(|error| panic!("{}: {error}", scene.name)))
+    }
+
+    pub(crate) fn on_cpu(&self, look: &Look) -> Film {
+        Prepared::new(&self.plan, LaneCount::native()).interpret(look)
+    }
+
+    pub(crate) fn renderer(
+        &self,
+        machine: &'static Machine,
+        dialect: Dialect,
+        mapping: Mapping,
+        size: [u32; 2],
+    ) -> WgpuRenderer<'static> {
+        let bvh = self.bvh.four_wide().expect("four children a node");
+        let Plan {
+            structure, data, ..
+        } = &self.plan;
+        WgpuRenderer::new(&machine.gpu, dialect, mapping, structure, data, bvh, size)
+            .unwrap_or_else(|error| panic!("{}: {error}", self.plan.name))
+    }
+
+    /// Rendered in the dialect that the probe has chosen.
+    pub(crate) fn on_gpu(&self, machine: &'static Machine, mapping: Mapping, look: &Look) -> Film {
+        let renderer = self.renderer(machine, machine.probe.dialect, mapping, look.size);
+        self.passes(&renderer, look, &[look.samples])
+    }
+
+    /// Samples in groups, each of as many passes as it takes.
+    pub(crate) fn passes(
+        &self,
+        renderer: &WgpuRenderer<'_>,
+        look: &Look,
+        groups: &[u32],
+    ) -> Film {
+        let [width, height] = look.size;
+        let mut film = Film::new(width, height, TILE_SIZE, self.plan.structure.layers);
+        let options = RenderOptions {
+            size: look.size,
+            max_depth: look.max_depth,
+            seed: look.seed,
+            reach: look.reach,
+            ..RenderOptions::default()
+        };
+        let mut first = 0;
+        for &group in groups {
+            let end = first + group;
+            while first < end {
+                let count = MAX_PASS.min(end - first);
+                renderer
+                    .pass(&mut film, Pass { first, count }, &options.tracer())
+                    .unwrap_or_else(|error| panic!("{}: {error}", self.plan.name));
+                first += count;
+            }
+        }
+        film
+    }
+
+    /// Fails unless the GPU's samples have the processor's bits: radiance, its spread, and all layers.
+    #[track_caller]
+    pub(crate) fn agrees(&self, machine: &'static Machine, mapping: Mapping, look: &Look) {
+        let (cpu, gpu) = (self.on_cpu(look), self.on_gpu(machine, mapping, look));
+        let difference = difference(&cpu, &gpu);
+        assert_eq!(difference, None, "{}, {mapping}, {look:?}", self.plan.name);
+    }
+}
+
+/// How two films differ; `None` if they are the same in all that they keep.
+#[must_use]
+pub(crate) fn difference(a: &Film, b: &Film) -> Option<String> {
+    if a == b {
+        return None;
+    }
+    let layer = a.layers().iter().find(|layer| {
+        let channels = 0..layer.channels().len();
+        channels
+            .into_iter()
+            .any(|channel| a.channel(*layer, channel) != b.channel(*layer, channel))
+    });
+    let picture = first_difference(&a.image(), &b.image());
+    picture
+        .or(layer.map(|layer| format!("layer {layer}")))
+        .or(Some("the spread of samples".to_owned()))
+}
+
+/// The comparison fails where it should.
+#[test]
+fn films_of_other_samples_differ() {
+    let film = |value: f32| {
+        let mut film = Film::new(2, 1, TILE_SIZE, residual_render::layer::Layers::NONE);
+        film.tiles_mut()[0].add(&[value; 6]);
+        film
+    };
+    assert_eq!(difference(&film(0.5), &film(0.5)), None);
+    assert!(difference(&film(0.5), &film(0.5_f32.next_up())).is_some());
+}
