@@ -6,8 +6,11 @@
 
 mod arithmetic;
 mod errors;
+mod kernels;
 mod parity;
 mod plain;
+mod reads;
+mod recorded;
 mod subject;
 
 use std::sync::OnceLock;

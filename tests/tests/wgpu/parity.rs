@@ -16,7 +16,7 @@ const MAPPINGS: [Mapping; 2] = [Mapping::Wavefront, Mapping::Megakernel];
 
 /// Files that are larger make tests wait for importers, scenes of more triangles for hierarchies.
 const LARGEST: u64 = 20 << 20;
-const MOST_TRIANGLES: usize = 1_000_000;
+const MOST_TRIANGLES: usize = 1_500_000;
 
 /// A file's scene at 64 × 64; under a sky, if it would be dark.
 ///
@@ -214,7 +214,8 @@ fn the_heat_map_is_of_visits() {
     colors.dedup();
     assert!(colors.len() > 8, "{} colours", colors.len());
     // The processor's hierarchy is another, but no less or more than a few times as good.
-    let [gpu, cpu] = [&films[0], &subject.on_cpu(&look)].map(|film| film.mean().iter().sum::<f64>());
+    let [gpu, cpu] =
+        [&films[0], &subject.on_cpu(&look)].map(|film| film.mean().iter().sum::<f64>());
     assert!(gpu > 0.3 * cpu && gpu < 3.0 * cpu, "{gpu} and {cpu}");
 }
 

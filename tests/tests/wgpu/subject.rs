@@ -55,12 +55,7 @@ impl Subject {
     }
 
     /// Samples in groups, each of as many passes as it takes.
-    pub(crate) fn passes(
-        &self,
-        renderer: &WgpuRenderer<'_>,
-        look: &Look,
-        groups: &[u32],
-    ) -> Film {
+    pub(crate) fn passes(&self, renderer: &WgpuRenderer<'_>, look: &Look, groups: &[u32]) -> Film {
         let [width, height] = look.size;
         let mut film = Film::new(width, height, TILE_SIZE, self.plan.structure.layers);
         let options = RenderOptions {

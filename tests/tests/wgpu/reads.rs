@@ -1,0 +1,140 @@
+//! Kernels are loaded without checks of bounds, on trust: no function of any scene reads beyond a buffer. Here every function is
+//! run as it is printed and every read looked at; and the image that comes of it is the processor's, so that what was looked at
+//! is what renders. No adapter is needed.
+
+use residual_bvh::BuildQuality;
+use residual_device_cpu::{AnyBvh, LaneCount};
+use residual_render::domain::{Buffer, Buffers};
+use residual_render::film::Film;
+use residual_render::layer::Layer;
+use residual_render::passes::RenderOptions;
+use residual_render::tracer::{DebugView, TracerNode};
+use residual_scenegen::plan::{Plan, PlanOptions, plan};
+use residual_tests::{Look, Prepared, fixtures, read_scene, scenes, tiny};
+use residual_wgsl::SceneFunctions;
+
+use crate::recorded::{Reads, Recording};
+use crate::subject::difference;
+
+/// Renders what is recorded of a plan, with these buffers.
+fn render(plan: &Plan, buffers: Buffers<'_>, look: &Look) -> (Film, Reads) {
+    let reads = Reads::default();
+    let options = RenderOptions {
+        size: look.size,
+        max_depth: look.max_depth,
+        seed: look.seed,
+        reach: look.reach,
+        ..RenderOptions::default()
+    };
+    let recording = Recording {
+        functions: &SceneFunctions::of(&plan.structure),
+        layers: plan.structure.layers,
+        buffers,
+        traversal: &AnyBvh::build(&plan.data, LaneCount::Four, BuildQuality::Fast),
+        options: options.tracer(),
+        reads: &reads,
+    };
+    let film = recording.film(look.samples);
+    (film, reads)
+}
+
+/// Nothing is read beyond a buffer, and the image is the processor's.
+fn check(plan: &Plan, look: &Look) {
+    let (film, reads) = render(plan, plan.data.buffers(), look);
+    let name = &plan.name;
+    assert!(reads.of(Buffer::Camera) > 0, "{name}: nothing is read");
+    let beyond = reads.beyond();
+    assert!(
+        beyond.is_empty(),
+        "{name}: {} reads, the first {}",
+        beyond.len(),
+        beyond[0]
+    );
+    let expected = Prepared::new(plan, LaneCount::native()).interpret(look);
+    assert_eq!(difference(&expected, &film), None, "{name}");
+}
+
+#[test]
+fn tiny_scenes_are_read_within_bounds() {
+    for tiny in tiny::all() {
+        check(&tiny.plan(), &Look::new(tiny::SIZE, 2));
+    }
+}
+
+#[test]
+fn tracers_and_layers_read_within_bounds() {
+    let views = DebugView::ALL.into_iter();
+    let views = views.filter(|&view| view != DebugView::TraversalCost);
+    let tracers = [TracerNode::Path, TracerNode::AmbientOcclusion];
+    let size = [21, 15];
+    for tracer in tracers.into_iter().chain(views.map(TracerNode::Debug)) {
+        for scene in [fixtures::textures(), fixtures::room(), fixtures::lights()] {
+            let options = PlanOptions {
+                size,
+                tracer,
+                layers: Layer::ALL.into_iter().collect(),
+                ..PlanOptions::default()
+            };
+            let look = Look {
+                reach: 2.0,
+                ..Look::new(size, 2)
+            };
+            check(&plan(&scene, &options).unwrap(), &look);
+        }
+    }
+}
+
+#[test]
+fn interiors_are_read_within_bounds() {
+    let Some(scenes) = scenes() else {
+        return;
+    };
+    for (file, sky) in [
+        ("interiors/cornell-box.glb", false),
+        ("interiors/living-room-grey-white.glb", false),
+        ("interiors/bedroom.glb", true),
+    ] {
+        let sky = sky.then(|| scenes.join("env/sky.hdr"));
+        let scene = read_scene(&scenes.join(file), sky).unwrap();
+        let options = PlanOptions {
+            size: [32; 2],
+            ..PlanOptions::default()
+        };
+        check(&plan(&scene, &options).unwrap(), &Look::new([32; 2], 1));
+    }
+}
+
+/// Reads beyond a buffer are found, whatever the buffer.
+#[test]
+fn short_buffers_are_found_out() {
+    let look = Look::new([21, 15], 1);
+    let options = PlanOptions {
+        size: look.size,
+        layers: Layer::ALL.into_iter().collect(),
+        ..PlanOptions::default()
+    };
+    let mut cut = 0;
+    for scene in [fixtures::textures(), fixtures::lights()] {
+        let plan = plan(&scene, &options).unwrap();
+        let (_, reads) = render(&plan, plan.data.buffers(), &look);
+        for short in Buffer::ALL
+            .into_iter()
+            .filter(|&buffer| reads.of(buffer) > 0)
+        {
+            let words = Buffer::ALL.map(|buffer| {
+                let words = plan.data.buffer(buffer);
+                match buffer == short {
+                    true => &words[..words.len() / 2],
+                    false => words,
+                }
+            });
+            let (_, reads) = render(&plan, Buffers::new(words), &look);
+            let beyond = reads.beyond();
+            assert!(!beyond.is_empty(), "half of {short:?} is not missed");
+            let name = format!("in {short:?}");
+            assert!(beyond[0].ends_with(&name), "{}", beyond[0]);
+            cut += 1;
+        }
+    }
+    assert!(cut > Buffer::COUNT, "{cut} buffers");
+}
