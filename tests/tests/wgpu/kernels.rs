@@ -1,7 +1,7 @@
 //! The texts of kernels, for every tiny scene: naga accepts them, nothing that was recorded is dead, and no function is so long
 //! that drivers choke on it. No adapter is needed.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use naga::compact::{KeepUnused, compact};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -23,48 +23,67 @@ const DOUBLE: Arithmetic = Arithmetic {
     square_root: SquareRoot::Double,
 };
 
-/// A kernel with its entry point.
+/// What is written by hand for all kernels; each is used by some kernel, and need not be by every one.
+const SHARED: [&str; 15] = [
+    "const QUEUES",
+    "const STACK",
+    "const STRIDE",
+    "const WORKGROUP",
+    "fn add",
+    "fn pixel_of",
+    "fn sample_of",
+    "struct Path",
+    "struct Settings",
+    "struct ShadowRay",
+    "var paths",
+    "var samples",
+    "var settings",
+    "var shadow_rays",
+    "var tree",
+];
+
+/// A kernel of a scene.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct Kernel {
-    entry: String,
+    entry: &'static str,
     text: String,
 }
 
-fn kernels(structure: &Structure, traits: Traits, arithmetic: Arithmetic) -> Vec<Kernel> {
-    let kernels = Kernels::new(structure, traits, arithmetic);
-    let mut all = vec![
-        ("emit_paths", kernels.emit()),
-        ("trace", kernels.trace()),
-        ("plan", kernels.control()),
-        ("scatter", kernels.scatter()),
-        ("follow_path", kernels.megakernel()),
-    ];
-    all.extend(
-        kernels
-            .queues_with_steps()
-            .map(|queue| ("shade", kernels.shade(queue))),
-    );
-    let kernel = |(entry, text): (&str, String)| Kernel {
-        entry: entry.to_owned(),
-        text,
-    };
-    all.into_iter().map(kernel).collect()
-}
-
-/// Every choice of what kernels may have in them.
-fn traits() -> impl Iterator<Item = Traits> {
-    (0..8).map(|bits| Traits {
+/// All kernels of a structure, with everything that they may have in them or not, each text once.
+fn kernels(structure: &Structure) -> BTreeSet<Kernel> {
+    let traits = (0..8).map(|bits| Traits {
         sided: bits & 1 != 0,
         visits: bits & 2 != 0,
         f64: bits & 4 != 0,
-    })
+    });
+    let everything = Traits {
+        sided: true,
+        visits: true,
+        f64: true,
+    };
+    let native = traits.map(|traits| (traits, Arithmetic::default()));
+    let mut all = BTreeSet::new();
+    for (traits, arithmetic) in native.chain([(everything, DOUBLE)]) {
+        let kernels = Kernels::new(structure, traits, arithmetic);
+        let mut add = |entry, text| all.insert(Kernel { entry, text });
+        add("emit_paths", kernels.emit());
+        add("trace", kernels.trace());
+        add("plan", kernels.control());
+        add("scatter", kernels.scatter());
+        for queue in kernels.queues_with_steps() {
+            add("shade", kernels.shade(queue));
+        }
+        add("follow_path", kernels.megakernel());
+    }
+    all
 }
 
-/// Parses and validates; panics with naga's words and the text.
+/// Parses and validates; panics with naga's words and the text. Only a text that says so may compute in `f64`.
 #[track_caller]
-fn accept(text: &str, f64: bool) -> naga::Module {
+fn accept(text: &str) -> naga::Module {
     let module = naga::front::wgsl::parse_str(text)
         .unwrap_or_else(|error| panic!("{}\n{text}", error.emit_to_string(text)));
-    let capabilities = match f64 {
+    let capabilities = match text.contains("f64") {
         true => Capabilities::FLOAT64,
         false => Capabilities::empty(),
     };
@@ -75,65 +94,73 @@ fn accept(text: &str, f64: bool) -> naga::Module {
     module
 }
 
-/// What naga could remove, by kind and name, and how many expressions of each function.
-fn inventory(module: &naga::Module) -> BTreeSet<String> {
-    let name = |name: &Option<String>| name.clone().unwrap_or_default();
-    let mut all = BTreeSet::new();
-    all.extend(
-        module
-            .types
-            .iter()
-            .filter_map(|(_, t)| Some(format!("struct {}", t.name.as_ref()?))),
-    );
-    all.extend(
-        module
-            .constants
-            .iter()
-            .map(|(_, c)| format!("const {}", name(&c.name))),
-    );
-    all.extend(
-        module
-            .global_variables
-            .iter()
-            .map(|(_, v)| format!("var {}", name(&v.name))),
-    );
+/// What naga could remove: by kind and name, functions also with how much is in them.
+fn inventory(module: &naga::Module) -> BTreeSet<(String, [usize; 2])> {
+    let named = |kind: &str, name: &Option<String>| {
+        let name = name.as_ref()?;
+        Some((format!("{kind} {name}"), [0; 2]))
+    };
+    let types = module.types.iter();
+    let types = types.filter_map(|(_, ty)| named("struct", &ty.name));
+    let variables = module.global_variables.iter();
+    let variables = variables.filter_map(|(_, variable)| named("var", &variable.name));
     let of_entries = module.entry_points.iter().map(|entry| &entry.function);
-    for function in module.functions.iter().map(|(_, f)| f).chain(of_entries) {
-        let (expressions, variables) = (function.expressions.len(), function.local_variables.len());
-        all.insert(format!(
-            "fn {}: {expressions} expressions, {variables} variables",
-            name(&function.name)
-        ));
-    }
-    all
+    let functions = module.functions.iter().map(|(_, function)| function);
+    let functions = functions.chain(of_entries).map(|function| {
+        let name = function.name.as_deref().unwrap_or_default();
+        let sizes = [function.expressions.len(), function.local_variables.len()];
+        (format!("fn {name}"), sizes)
+    });
+    types.chain(variables).chain(functions).collect()
 }
 
-/// What is written by hand for all kernels, of which one may use less.
-const SHARED: [&str; 0] = [];
+/// Constants and variables that are named once and never again: naga keeps what has a name.
+fn idle_names(text: &str) -> Vec<String> {
+    let code = text.lines().filter(|line| !line.trim().starts_with("//"));
+    let code: Vec<&str> = code.collect();
+    let code = code.join("\n");
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    let mut idle = Vec::new();
+    // Constants are named in the whole text, variables in their function.
+    for (part, keywords) in std::iter::once((&code[..], &["const"][..])).chain(
+        code.split("\nfn ")
+            .map(|function| (function, &["let", "var"][..])),
+    ) {
+        let mut uses = BTreeMap::<&str, usize>::new();
+        for word in part.split(|c| !is_part(c)) {
+            *uses.entry(word).or_default() += 1;
+        }
+        for line in part.lines().map(str::trim) {
+            let Some((keyword, rest)) = line.split_once(' ') else {
+                continue;
+            };
+            let name = rest.split(|c| !is_part(c)).next().unwrap_or_default();
+            if keywords.contains(&keyword) && uses[name] == 1 {
+                idle.push(format!("{keyword} {name}"));
+            }
+        }
+    }
+    idle
+}
 
-/// What naga removes from a kernel that is not shared.
-fn dead(kernel: &Kernel, f64: bool) -> Vec<String> {
-    let before = accept(&kernel.text, f64);
+/// What naga removes from a kernel, or removes something from, and names that nothing refers to.
+fn dead(kernel: &Kernel) -> BTreeSet<String> {
+    let before = accept(&kernel.text);
+    let mut points = before.entry_points.iter();
+    assert!(points.any(|point| point.name == kernel.entry));
     let mut after = before.clone();
-    let has_entry = |point: &naga::EntryPoint| point.name == kernel.entry;
-    assert!(
-        before.entry_points.iter().any(has_entry),
-        "{}",
-        kernel.entry
-    );
     compact(&mut after, KeepUnused::No);
     let after = inventory(&after);
     let before = inventory(&before);
     let removed = before.difference(&after);
-    removed
-        .filter(|what| !SHARED.contains(&what.as_str()))
-        .cloned()
-        .collect()
+    let removed = removed.map(|(name, _)| name.clone());
+    removed.chain(idle_names(&kernel.text)).collect()
 }
 
-/// The longest function of a text: lines and name.
+/// The longest function of a text: its lines, and its name.
 fn longest(text: &str) -> (usize, String) {
-    let (mut most, mut start, mut name) = ((0, String::new()), 0, "");
+    let mut most = (0, String::new());
+    let (mut start, mut name) = (0, "");
     for (number, line) in text.lines().enumerate() {
         if let Some(rest) = line.strip_prefix("fn ") {
             start = number;
@@ -145,34 +172,96 @@ fn longest(text: &str) -> (usize, String) {
     most
 }
 
-/// Checks all kernels of a structure; returns the length of the longest function.
-fn check(name: &str, structure: &Structure) -> (usize, String) {
+/// Checks all kernels of a structure.
+fn check(name: &str, structure: &Structure) {
     let mut most = (0, String::new());
-    for traits in traits() {
-        for arithmetic in [Arithmetic::default(), DOUBLE] {
-            let f64 = traits.f64 || arithmetic.needs_f64();
-            for kernel in kernels(structure, traits, arithmetic) {
-                let dead = dead(&kernel, f64);
-                assert!(
-                    dead.is_empty(),
-                    "{name}, {}, {traits:?}: {dead:#?}\n{}",
-                    kernel.entry,
-                    kernel.text
-                );
-                most = most.max(longest(&kernel.text));
-            }
-        }
+    let mut unused: Option<BTreeSet<String>> = None;
+    for kernel in kernels(structure) {
+        let dead = dead(&kernel);
+        let is_shared = |what: &&String| SHARED.contains(&what.as_str());
+        let recorded: Vec<_> = dead.iter().filter(|what| !is_shared(what)).collect();
+        let Kernel { entry, text } = &kernel;
+        assert!(recorded.is_empty(), "{name}, {entry}: {recorded:?}\n{text}");
+        most = most.max(longest(text));
+        unused = Some(match unused {
+            Some(unused) => unused.intersection(&dead).cloned().collect(),
+            None => dead,
+        });
     }
-    most
+    let unused = unused.expect("a kernel");
+    assert!(unused.is_empty(), "{name}: no kernel uses {unused:?}");
+    let (lines, function) = most;
+    println!("{name}: the longest function is {function}, {lines} lines");
+    assert!(lines <= LONGEST, "{name}: {function} has {lines} lines");
 }
 
 #[test]
-fn kernels_of_tiny_scenes_are_valid_and_have_no_dead_code() {
-    let mut most = (0, String::new());
+fn kernels_of_tiny_scenes() {
     for tiny in tiny::all() {
-        most = most.max(check(tiny.name, &tiny.plan().structure));
+        check(tiny.name, &tiny.plan().structure);
     }
-    let (lines, name) = most;
-    println!("the longest function: {name}, {lines} lines");
-    assert!(lines <= LONGEST);
+}
+
+#[test]
+fn kernels_of_every_tracer_and_layer() {
+    let views = DebugView::ALL.into_iter().map(TracerNode::Debug);
+    let tracers = [TracerNode::Path, TracerNode::AmbientOcclusion];
+    for tracer in tracers.into_iter().chain(views) {
+        for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
+            let options = PlanOptions {
+                tracer,
+                layers,
+                ..PlanOptions::default()
+            };
+            let plan = plan(&fixtures::textures(), &options).unwrap();
+            check(&format!("{tracer:?}"), &plan.structure);
+        }
+    }
+}
+
+#[test]
+fn kernels_of_interiors() {
+    let Some(scenes) = scenes() else {
+        return;
+    };
+    for file in [
+        "cornell-box.glb",
+        "living-room-grey-white.glb",
+        "bedroom.glb",
+    ] {
+        let scene = read_scene(&scenes.join("interiors").join(file), None).unwrap();
+        let plan = plan(&scene, &PlanOptions::default()).unwrap();
+        check(file, &plan.structure);
+    }
+}
+
+/// What is dead is found: a function, a variable, a constant, a structure, a value.
+#[test]
+fn dead_code_is_found() {
+    let plan = tiny::plain().plan();
+    let kernel = kernels(&plan.structure)
+        .into_iter()
+        .find(|kernel| kernel.entry == "shade")
+        .expect("a kernel");
+    let text = kernel.text.clone();
+    let with = |text: String| {
+        let dead = dead(&Kernel {
+            entry: kernel.entry,
+            text,
+        });
+        let is_new = |what: &&String| !SHARED.contains(&what.as_str());
+        dead.iter().filter(is_new).cloned().collect::<Vec<_>>()
+    };
+    assert_eq!(with(text.clone()), [""; 0]);
+    for (addition, what) in [
+        ("fn idle() -> u32 {\n    return 1u;\n}\n", "fn idle"),
+        ("var<private> idle: u32;\n", "var idle"),
+        ("const IDLE: u32 = 7u;\n", "const IDLE"),
+        ("struct Idle {\n    x: u32,\n}\n", "struct Idle"),
+    ] {
+        assert_eq!(with(format!("{text}\n{addition}")), [what]);
+    }
+    let entry = "    let path = paths[slot];\n";
+    let idle = format!("{entry}    let idle = path.depth * 3u;\n");
+    assert_eq!(with(text.replace(entry, &idle)), ["let idle"]);
 }

@@ -74,13 +74,18 @@ fn check(subject: &Subject) {
             "{name}, {mapping}: more than roundings in {roundings:.4}, far off {far:.4}; means apart by {distances:?} σ"
         );
         assert_eq!(same.invalid_samples(), 0, "{name}");
-        assert!(roundings < 0.5, "{name}: {roundings} of the pixels");
+        // Blended alpha is decided by a hash of the ray's bits, so that roundings are other random numbers.
+        let has_alpha = subject.plan.data.alpha_tested.contains(&true);
+        assert!(
+            has_alpha || roundings < 0.2,
+            "{name}: {roundings} of the pixels"
+        );
         assert!(far < 0.02, "{name}: {far} of the pixels are far off");
         // The same samples are far closer than independent ones.
         assert!(distances[0] < 1.0, "{name}: {} σ", distances[0]);
         assert!(distances[1] < 4.0, "{name}: {} σ", distances[1]);
         // Other samples show that the measures can fail.
-        assert!(part_off(&cpu, &other, 1e-4) > roundings.max(0.2));
+        assert!(part_off(&cpu, &other, 1e-4) > roundings.max(0.2), "{name}");
     }
 }
 
