@@ -5,6 +5,7 @@ mod bench;
 mod build;
 mod cache;
 mod emit;
+mod gpu;
 mod inspect;
 #[cfg(target_os = "linux")]
 mod interrupt;

@@ -7,8 +7,10 @@
 mod arithmetic;
 mod errors;
 mod kernels;
+mod meshes;
 mod parity;
 mod plain;
+mod rays;
 mod reads;
 mod recorded;
 mod subject;
