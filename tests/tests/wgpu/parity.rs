@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use residual_device_wgpu::{Mapping, Mode};
+use residual_device_wgpu::Mapping;
 use residual_render::layer::{Layer, Layers};
 use residual_render::tracer::{DebugView, TracerNode};
 use residual_scenegen::plan::{PlanOptions, plan};
@@ -97,21 +97,27 @@ fn paths_of_any_length() {
     let Some(machine) = exact_machine() else {
         return;
     };
-    // Between two looks at whether any path is left, the device takes sixteen vertices.
-    for max_depth in [1, 2, 16, 17, 20] {
-        let look = Look {
-            max_depth,
-            seed: 7,
-            ..Look::new([23, 17], 3)
-        };
-        let options = PlanOptions {
-            size: look.size,
-            ..PlanOptions::default()
-        };
-        for scene in [fixtures::room(), fixtures::lights()] {
-            let subject = Subject::of(&scene, &options);
-            for mapping in MAPPINGS {
-                subject.agrees(machine, mapping, &look);
+    let size = [23, 17];
+    let options = PlanOptions {
+        size,
+        ..PlanOptions::default()
+    };
+    for scene in [fixtures::room(), fixtures::lights()] {
+        let subject = Subject::of(&scene, &options);
+        for mapping in MAPPINGS {
+            // The length of paths is no part of kernels.
+            let renderer = subject.renderer(machine, machine.probe.dialect, mapping, size);
+            // Between two looks at whether any path is left, the device takes sixteen vertices.
+            for max_depth in [1, 2, 16, 17, 20] {
+                let look = Look {
+                    max_depth,
+                    seed: 7,
+                    ..Look::new(size, 3)
+                };
+                let cpu = subject.on_cpu(&look);
+                let gpu = subject.passes(&renderer, &look, &[look.samples]);
+                let name = &subject.plan.name;
+                assert_eq!(difference(&cpu, &gpu), None, "{name}, {mapping}, {look:?}");
             }
         }
     }
@@ -128,7 +134,7 @@ fn images_of_any_size() {
             size,
             ..PlanOptions::default()
         };
-        let subject = Subject::of(&fixtures::room(), &options);
+        let subject = Subject::of(&tiny::plain().scene, &options);
         for mapping in MAPPINGS {
             subject.agrees(machine, mapping, &Look::new(size, 2));
         }
@@ -156,7 +162,7 @@ fn a_sample_of_two_launches() {
     }
 }
 
-/// Every tracer, with and without all layers. What traversal costs depends on the hierarchy, and is not compared here.
+/// Every tracer, with all layers and without any. What traversal costs depends on the hierarchy, and is not compared here.
 #[test]
 fn tracers_and_layers() {
     let Some(machine) = exact_machine() else {
@@ -169,7 +175,10 @@ fn tracers_and_layers() {
     let tracers = [TracerNode::Path, TracerNode::AmbientOcclusion];
     let size = [37, 29];
     for tracer in tracers.into_iter().chain(views) {
-        for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
+        for (scene, layers) in [
+            (fixtures::textures(), Layer::ALL.into_iter().collect()),
+            (fixtures::lights(), Layers::NONE),
+        ] {
             let options = PlanOptions {
                 size,
                 tracer,
@@ -180,11 +189,9 @@ fn tracers_and_layers() {
                 reach: 2.0,
                 ..Look::new(size, 3)
             };
-            for scene in [fixtures::textures(), fixtures::room()] {
-                let subject = Subject::of(&scene, &options);
-                for mapping in MAPPINGS {
-                    subject.agrees(machine, mapping, &look);
-                }
+            let subject = Subject::of(&scene, &options);
+            for mapping in MAPPINGS {
+                subject.agrees(machine, mapping, &look);
             }
         }
     }
@@ -243,13 +250,4 @@ fn runs_and_passes_do_not_show() {
         let film = subject.passes(&renderer, &other, &[4]);
         assert!(difference(&expected, &film).is_some(), "seeds show");
     }
-}
-
-/// Plain WGSL is not what the probe has chosen on an adapter that is exact: else nothing was tested here.
-#[test]
-fn exact_kernels_are_passed_through() {
-    let Some(machine) = exact_machine() else {
-        return;
-    };
-    assert_eq!(machine.probe.dialect.mode, Mode::Exact);
 }
