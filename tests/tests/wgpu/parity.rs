@@ -1,66 +1,25 @@
 //! Samples of the GPU have the processor's bits, where the adapter's arithmetic is exact. It rests on the same formulas in the
 //! same order, on hits that do not depend on the hierarchy, and on samples that are added up in their order.
 
-use std::path::Path;
-
 use residual_device_wgpu::Mapping;
 use residual_render::layer::{Layer, Layers};
 use residual_render::tracer::{DebugView, TracerNode};
-use residual_scenegen::plan::{PlanOptions, plan};
-use residual_tests::{Look, fixtures, read_scene, scene_files, scenes, tiny};
+use residual_scenegen::plan::PlanOptions;
+use residual_tests::{Look, fixtures, tiny};
 
 use crate::exact_machine;
-use crate::subject::{Subject, difference};
+use crate::subject::{Subject, difference, for_each_shared};
 
 const MAPPINGS: [Mapping; 2] = [Mapping::Wavefront, Mapping::Megakernel];
 
-/// Files that are larger make tests wait for importers, scenes of more triangles for hierarchies.
-const LARGEST: u64 = 20 << 20;
-const MOST_TRIANGLES: usize = 1_500_000;
-
-/// A file's scene at 64 × 64; under a sky, if it would be dark.
-///
-/// # Errors
-/// With the reason why it is not rendered.
-fn subject_of(file: &Path, sky: &Path) -> Result<Subject, String> {
-    if file.metadata().expect("a file").len() > LARGEST {
-        return Err("the file is large".to_owned());
-    }
-    let planned = |environment| {
-        let scene = read_scene(file, environment).map_err(|error| error.to_string())?;
-        let options = PlanOptions {
-            size: [64; 2],
-            ..PlanOptions::default()
-        };
-        plan(&scene, &options).map_err(|error| error.to_string())
-    };
-    let mut of_file = planned(None)?;
-    if of_file.structure.lights.is_empty() {
-        of_file = planned(Some(sky.to_owned()))?;
-    }
-    match of_file.data.triangle_count() {
-        count if count > MOST_TRIANGLES => Err(format!("{count} triangles")),
-        _ => Ok(Subject::new(of_file)),
-    }
-}
-
 /// Every shared scene of a folder, as a wavefront.
 fn check_folder(folder: &str, at_least: usize) {
-    let (Some(machine), Some(scenes)) = (exact_machine(), scenes()) else {
+    let Some(machine) = exact_machine() else {
         return;
     };
-    let sky = scenes.join("env/sky.hdr");
-    let mut rendered = 0;
-    for file in scene_files(&scenes.join(folder)) {
-        match subject_of(&file, &sky) {
-            Ok(subject) => {
-                subject.agrees(machine, Mapping::Wavefront, &Look::new([64; 2], 2));
-                rendered += 1;
-            }
-            Err(reason) => println!("skipped: {}: {reason}", file.display()),
-        }
-    }
-    assert!(rendered >= at_least, "{rendered} scenes in {folder}");
+    let look = Look::new([64; 2], 2);
+    let check = |subject: Subject| subject.agrees(machine, Mapping::Wavefront, &look);
+    for_each_shared(folder, at_least, look.size, check);
 }
 
 #[test]

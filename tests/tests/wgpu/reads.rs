@@ -1,23 +1,21 @@
-//! Kernels are loaded without checks of bounds, on trust: no function of any scene reads beyond a buffer. Here every function is
-//! run as it is printed and every read looked at; and the image that comes of it is the processor's, so that what was looked at
-//! is what renders. No adapter is needed.
+//! Kernels are loaded without checks of bounds, on trust: no function of any scene reads beyond a buffer. Here every function
+//! is run as it is printed and every read looked at; and the image that comes of it is the processor's, so that what was looked
+//! at is what renders. No adapter is needed.
 
-use residual_bvh::BuildQuality;
-use residual_device_cpu::{AnyBvh, LaneCount};
 use residual_render::domain::{Buffer, Buffers};
 use residual_render::film::Film;
 use residual_render::layer::Layer;
 use residual_render::passes::RenderOptions;
 use residual_render::tracer::{DebugView, TracerNode};
-use residual_scenegen::plan::{Plan, PlanOptions, plan};
-use residual_tests::{Look, Prepared, fixtures, read_scene, scenes, tiny};
+use residual_scenegen::plan::PlanOptions;
+use residual_tests::{Look, fixtures, tiny};
 use residual_wgsl::SceneFunctions;
 
 use crate::recorded::{Reads, Recording};
-use crate::subject::difference;
+use crate::subject::{Subject, difference, for_each_shared};
 
 /// Renders what is recorded of a plan, with these buffers.
-fn render(plan: &Plan, buffers: Buffers<'_>, look: &Look) -> (Film, Reads) {
+fn render(Subject { plan, bvh }: &Subject, buffers: Buffers<'_>, look: &Look) -> (Film, Reads) {
     let reads = Reads::default();
     let options = RenderOptions {
         size: look.size,
@@ -30,7 +28,7 @@ fn render(plan: &Plan, buffers: Buffers<'_>, look: &Look) -> (Film, Reads) {
         functions: &SceneFunctions::of(&plan.structure),
         layers: plan.structure.layers,
         buffers,
-        traversal: &AnyBvh::build(&plan.data, LaneCount::Four, BuildQuality::Fast),
+        traversal: bvh,
         options: options.tracer(),
         reads: &reads,
     };
@@ -39,8 +37,9 @@ fn render(plan: &Plan, buffers: Buffers<'_>, look: &Look) -> (Film, Reads) {
 }
 
 /// Nothing is read beyond a buffer, and the image is the processor's.
-fn check(plan: &Plan, look: &Look) {
-    let (film, reads) = render(plan, plan.data.buffers(), look);
+fn check(subject: &Subject, look: &Look) {
+    let plan = &subject.plan;
+    let (film, reads) = render(subject, plan.data.buffers(), look);
     let name = &plan.name;
     assert!(reads.of(Buffer::Camera) > 0, "{name}: nothing is read");
     let beyond = reads.beyond();
@@ -50,14 +49,14 @@ fn check(plan: &Plan, look: &Look) {
         beyond.len(),
         beyond[0]
     );
-    let expected = Prepared::new(plan, LaneCount::native()).interpret(look);
+    let expected = subject.on_cpu(look);
     assert_eq!(difference(&expected, &film), None, "{name}");
 }
 
 #[test]
 fn tiny_scenes_are_read_within_bounds() {
     for tiny in tiny::all() {
-        check(&tiny.plan(), &Look::new(tiny::SIZE, 2));
+        check(&Subject::new(tiny.plan()), &Look::new(tiny::SIZE, 2));
     }
 }
 
@@ -79,28 +78,18 @@ fn tracers_and_layers_read_within_bounds() {
                 reach: 2.0,
                 ..Look::new(size, 2)
             };
-            check(&plan(&scene, &options).unwrap(), &look);
+            check(&Subject::of(&scene, &options), &look);
         }
     }
 }
 
 #[test]
-fn interiors_are_read_within_bounds() {
-    let Some(scenes) = scenes() else {
-        return;
-    };
-    for (file, sky) in [
-        ("interiors/cornell-box.glb", false),
-        ("interiors/living-room-grey-white.glb", false),
-        ("interiors/bedroom.glb", true),
-    ] {
-        let sky = sky.then(|| scenes.join("env/sky.hdr"));
-        let scene = read_scene(&scenes.join(file), sky).unwrap();
-        let options = PlanOptions {
-            size: [32; 2],
-            ..PlanOptions::default()
-        };
-        check(&plan(&scene, &options).unwrap(), &Look::new([32; 2], 1));
+fn shared_scenes_are_read_within_bounds() {
+    let look = Look::new([24; 2], 1);
+    for (folder, at_least) in [("interiors", 7), ("materials", 25)] {
+        for_each_shared(folder, at_least, look.size, |subject| {
+            check(&subject, &look)
+        });
     }
 }
 
@@ -115,8 +104,9 @@ fn short_buffers_are_found_out() {
     };
     let mut cut = 0;
     for scene in [fixtures::textures(), fixtures::lights()] {
-        let plan = plan(&scene, &options).unwrap();
-        let (_, reads) = render(&plan, plan.data.buffers(), &look);
+        let subject = Subject::of(&scene, &options);
+        let plan = &subject.plan;
+        let (_, reads) = render(&subject, plan.data.buffers(), &look);
         for short in Buffer::ALL
             .into_iter()
             .filter(|&buffer| reads.of(buffer) > 0)
@@ -128,7 +118,7 @@ fn short_buffers_are_found_out() {
                     false => words,
                 }
             });
-            let (_, reads) = render(&plan, Buffers::new(words), &look);
+            let (_, reads) = render(&subject, Buffers::new(words), &look);
             let beyond = reads.beyond();
             assert!(!beyond.is_empty(), "half of {short:?} is not missed");
             let name = format!("in {short:?}");

@@ -1,5 +1,7 @@
 //! Something to render, on either device.
 
+use std::path::Path;
+
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, LaneCount};
 use residual_device_wgpu::{Dialect, Mapping, WgpuRenderer};
@@ -8,14 +10,14 @@ use residual_render::passes::{MAX_PASS, Pass, RenderOptions};
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
 use residual_tests::pictures::first_difference;
-use residual_tests::{Look, Prepared};
+use residual_tests::{Look, Prepared, read_scene, scene_files, scenes};
 
 use crate::Machine;
 
 /// A plan with the hierarchy that GPUs traverse.
 pub(crate) struct Subject {
     pub(crate) plan: Plan,
-    bvh: AnyBvh,
+    pub(crate) bvh: AnyBvh,
 }
 
 impl Subject {
@@ -86,6 +88,60 @@ impl Subject {
         let difference = difference(&cpu, &gpu);
         assert_eq!(difference, None, "{}, {mapping}, {look:?}", self.plan.name);
     }
+}
+
+/// Files that are larger make tests wait for importers, scenes of more triangles for hierarchies.
+const LARGEST: u64 = 20 << 20;
+const MOST_TRIANGLES: usize = 1_500_000;
+
+/// A file's scene; under a sky, if it would be dark.
+///
+/// # Errors
+/// With the reason why it is not rendered.
+fn subject_of(file: &Path, sky: &Path, size: [u32; 2]) -> Result<Subject, String> {
+    if file.metadata().expect("a file").len() > LARGEST {
+        return Err("the file is large".to_owned());
+    }
+    let planned = |environment| {
+        let scene = read_scene(file, environment).map_err(|error| error.to_string())?;
+        let options = PlanOptions {
+            size,
+            ..PlanOptions::default()
+        };
+        plan(&scene, &options).map_err(|error| error.to_string())
+    };
+    let mut of_file = planned(None)?;
+    if of_file.structure.lights.is_empty() {
+        of_file = planned(Some(sky.to_owned()))?;
+    }
+    match of_file.data.triangle_count() {
+        count if count > MOST_TRIANGLES => Err(format!("{count} triangles")),
+        _ => Ok(Subject::new(of_file)),
+    }
+}
+
+/// Does something with every shared scene of a folder, of which there are to be some.
+pub(crate) fn for_each_shared(
+    folder: &str,
+    at_least: usize,
+    size: [u32; 2],
+    mut check: impl FnMut(Subject),
+) {
+    let Some(scenes) = scenes() else {
+        return;
+    };
+    let sky = scenes.join("env/sky.hdr");
+    let mut checked = 0;
+    for file in scene_files(&scenes.join(folder)) {
+        match subject_of(&file, &sky, size) {
+            Ok(subject) => {
+                check(subject);
+                checked += 1;
+            }
+            Err(reason) => println!("skipped: {}: {reason}", file.display()),
+        }
+    }
+    assert!(checked >= at_least, "{checked} scenes in {folder}");
 }
 
 /// How two films differ; `None` if they are the same in all that they keep.
