@@ -7,13 +7,13 @@ use naga::back::spv;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// What becomes of numbers below the smallest normal one.
+/// What drivers are told of denormals, signs of zero, infinities and NaN (SPV_KHR_float_controls).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Denormals {
-    /// What the driver makes of them.
+pub enum FloatControls {
+    /// Nothing: they may flush the first, and take the others for absent.
     Unstated,
-    /// The driver is told to keep them (SPV_KHR_float_controls).
-    Preserved,
+    /// To keep all of them.
+    Preserve,
 }
 
 /// A module for drivers.
@@ -27,7 +27,7 @@ pub(crate) struct Spirv {
 ///
 /// # Errors
 /// With naga's words, if it does not accept the text.
-pub(crate) fn spirv(text: &str, denormals: Denormals) -> Result<Spirv, String> {
+pub(crate) fn spirv(text: &str, controls: FloatControls) -> Result<Spirv, String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::FLOAT64)
         .validate(&module)
@@ -51,7 +51,7 @@ pub(crate) fn spirv(text: &str, denormals: Denormals) -> Result<Spirv, String> {
     let words = spv::write_vec(&module, &info, &options, None).map_err(|e| e.to_string())?;
     let entry_points = module.entry_points.iter();
     Ok(Spirv {
-        words: decorate(&words, denormals),
+        words: decorate(&words, controls),
         entry_points: entry_points
             .map(|point| (point.name.clone(), point.workgroup_size))
             .collect(),
@@ -80,15 +80,15 @@ mod op {
 }
 /// `Fma` of GLSL.std.450.
 const GLSL_FMA: u32 = 50;
-/// A decoration, a capability and an execution mode.
 const NO_CONTRACTION: u32 = 42;
-const CAPABILITY_DENORM_PRESERVE: u32 = 4464;
-const DENORM_PRESERVE: u32 = 4459;
+/// `DenormPreserve` and `SignedZeroInfNanPreserve`, each as capability and as execution mode.
+const PRESERVE: [(u32, u32); 2] = [(4464, 4459), (4466, 4461)];
 /// Words before the first instruction.
 const HEADER: usize = 5;
 
-/// The same module with `NoContraction` on the results of floating-point arithmetic, and what it says of denormals.
-fn decorate(words: &[u32], denormals: Denormals) -> Vec<u32> {
+/// The same module with `NoContraction` on the results of floating-point arithmetic, and what it says of numbers that are not
+/// normal.
+fn decorate(words: &[u32], controls: FloatControls) -> Vec<u32> {
     let (mut at, mut glsl, mut results, mut entry_points) = (HEADER, 0, Vec::new(), Vec::new());
     let (mut capabilities_end, mut modes_end, mut first_type) = (HEADER, HEADER, None);
     while at < words.len() {
@@ -119,21 +119,20 @@ fn decorate(words: &[u32], denormals: Denormals) -> Vec<u32> {
     // Instructions have their order: capabilities, extensions, …, modes, …, decorations, types.
     let first_type = first_type.unwrap_or(words.len());
     let mut decorated = words[..capabilities_end].to_vec();
-    if denormals == Denormals::Preserved {
-        decorated.extend([2 << 16 | op::CAPABILITY, CAPABILITY_DENORM_PRESERVE]);
+    if controls == FloatControls::Preserve {
+        for (capability, _) in PRESERVE {
+            decorated.extend([2 << 16 | op::CAPABILITY, capability]);
+        }
         let name = literal("SPV_KHR_float_controls");
         decorated.push((1 + name.len() as u32) << 16 | op::EXTENSION);
         decorated.extend(name);
     }
     decorated.extend(&words[capabilities_end..modes_end]);
-    if denormals == Denormals::Preserved {
+    if controls == FloatControls::Preserve {
         for entry_point in entry_points {
-            decorated.extend([
-                4 << 16 | op::EXECUTION_MODE,
-                entry_point,
-                DENORM_PRESERVE,
-                32,
-            ]);
+            for (_, mode) in PRESERVE {
+                decorated.extend([4 << 16 | op::EXECUTION_MODE, entry_point, mode, 32]);
+            }
         }
     }
     decorated.extend(&words[modes_end..first_type]);
@@ -163,7 +162,7 @@ mod tests {
             @compute @workgroup_size(8, 2) fn main(@builtin(global_invocation_id) id: vec3u) {
                 x[id.x] = fma(x[0], x[1], -x[2]) * (x[3] + x[4]) / x[5] - floor(x[6]);
             }";
-        let spirv = spirv(text, Denormals::Unstated).unwrap();
+        let spirv = spirv(text, FloatControls::Unstated).unwrap();
         assert_eq!(spirv.entry_points, [("main".to_owned(), [8, 2, 1])]);
         let no_contraction = spirv
             .words
@@ -175,7 +174,7 @@ mod tests {
 
     #[test]
     fn texts_that_are_no_wgsl_are_refused_in_words() {
-        let error = spirv("fn main() { let x = ; }", Denormals::Unstated)
+        let error = spirv("fn main() { let x = ; }", FloatControls::Unstated)
             .err()
             .unwrap();
         assert!(error.contains("expected"), "{error}");

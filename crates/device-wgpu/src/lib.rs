@@ -22,7 +22,7 @@ mod tree;
 mod wavefront;
 
 pub use error::Error;
-pub use exact::Denormals;
+pub use exact::FloatControls;
 pub use gpu::{AdapterDescription, Gpu, list_adapters};
 pub use probe::{Answers, Probe, Question, Tally};
 pub use rays::RayQueries;

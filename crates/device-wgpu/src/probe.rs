@@ -8,14 +8,12 @@ use std::fmt;
 use residual_render::domain::Domain as _;
 use residual_render::domain::operations::{Answer, Expression, Operation};
 use residual_render::domain::tape::{Op, Outputs, Record, Tape};
-use residual_wgsl::{
-    Arithmetic, Division, Fma, Module, Recorded, Selection, SquareRoot, WORKGROUP,
-};
+use residual_wgsl::{Arithmetic, Division, Fma, Module, Recorded, SquareRoot, WORKGROUP};
 use wgpu::{BufferUsages, Features};
 
 use crate::bindings::{Access, group, layout, pipeline_layout};
 use crate::error::Error;
-use crate::exact::Denormals;
+use crate::exact::FloatControls;
 use crate::gpu::Gpu;
 use crate::shader::{Dialect, Mode, pipeline};
 
@@ -191,9 +189,9 @@ impl Gpu {
         if !self.is_exact() {
             return ask(Mode::Plain, native);
         }
-        let mut best = ask(Mode::Exact(Denormals::Unstated), native)?;
-        if !best.answers.has_right(Op::Mul) {
-            let preserved = ask(Mode::Exact(Denormals::Preserved), native)?;
+        let mut best = ask(Mode::Exact(FloatControls::Unstated), native)?;
+        if !best.answers.has_right(Op::Mul) || !best.answers.has_right(Op::Min) {
+            let preserved = ask(Mode::Exact(FloatControls::Preserve), native)?;
             if preserved.answers.wrong() < best.answers.wrong() {
                 best = preserved;
             }
@@ -203,9 +201,6 @@ impl Gpu {
         }
         // What is wrong may be right in other words.
         let mut arithmetic = native;
-        if !best.answers.has_right(Op::Min) {
-            arithmetic.selection = Selection::Bits;
-        }
         if !FUSES {
             arithmetic.fma = Fma::Unfused;
         }
@@ -214,7 +209,6 @@ impl Gpu {
                 fma: if FUSES { Fma::Double } else { Fma::Unfused },
                 division: Division::Double,
                 square_root: SquareRoot::Double,
-                ..arithmetic
             };
             let double_answers = ask(best.dialect.mode, double)?.answers;
             let is_better = |op| double_answers.wrong_of(op) < best.answers.wrong_of(op);

@@ -6,14 +6,14 @@ use residual_wgsl::Arithmetic;
 use wgpu::{PipelineLayout, ShaderModule, ShaderRuntimeChecks};
 
 use crate::error::Error;
-use crate::exact::{self, Denormals};
+use crate::exact::{self, FloatControls};
 use crate::gpu::Gpu;
 
 /// How kernels reach the driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// As SPIR-V without contraction: operations round as the processor's.
-    Exact(Denormals),
+    Exact(FloatControls),
     /// As wgpu translates them: compilers may contract, reassociate, and assume that there is no NaN.
     Plain,
 }
@@ -29,11 +29,11 @@ pub struct Dialect {
 
 fn module(gpu: &Gpu, mode: Mode, text: &str) -> Result<ShaderModule, String> {
     match mode {
-        Mode::Exact(denormals) => {
+        Mode::Exact(controls) => {
             let exact::Spirv {
                 words,
                 entry_points,
-            } = exact::spirv(text, denormals)?;
+            } = exact::spirv(text, controls)?;
             let entry_points = entry_points.into_iter().map(|(name, [x, y, z])| {
                 wgpu::PassthroughShaderEntryPoint {
                     name: name.into(),

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
-use residual_device_wgpu::{Denormals, Dialect, Gpu, Mapping, Mode, Probe, WgpuRenderer};
+use residual_device_wgpu::{Dialect, FloatControls, Gpu, Mapping, Mode, Probe, WgpuRenderer};
 use residual_frontend::stats::WgpuReport;
 use residual_render::film::{Film, TILE_SIZE};
 use residual_render::passes::{Counters, Pass, RenderOptions};
@@ -234,13 +234,13 @@ const FIRST: Pass = Pass { first: 0, count: 1 };
 pub fn arithmetic(dialect: &Dialect) -> String {
     let Dialect { mode, arithmetic } = dialect;
     let mode = match mode {
-        Mode::Exact(Denormals::Unstated) => "exact",
-        Mode::Exact(Denormals::Preserved) => "exact, denormals preserved",
+        Mode::Exact(FloatControls::Unstated) => "exact",
+        Mode::Exact(FloatControls::Preserve) => "exact, float controls",
         Mode::Plain => "plain",
     };
     let operations = format!(
-        "fma {:?}, division {:?}, square root {:?}, selection of {:?}",
-        arithmetic.fma, arithmetic.division, arithmetic.square_root, arithmetic.selection
+        "fma {:?}, division {:?}, square root {:?}",
+        arithmetic.fma, arithmetic.division, arithmetic.square_root
     );
     format!("{mode}; {}", operations.to_lowercase())
 }

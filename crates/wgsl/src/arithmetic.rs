@@ -40,16 +40,6 @@ pub enum SquareRoot {
     Double,
 }
 
-/// How one of two numbers is selected.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Selection {
-    /// As numbers.
-    #[default]
-    Numbers,
-    /// As bits: some compilers make of `a < b ? a : b` a minimum that does not give the second of NaN and of two zeros.
-    Bits,
-}
-
 /// How operations are spelled that adapters may round in different ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Arithmetic {
@@ -59,8 +49,6 @@ pub struct Arithmetic {
     pub division: Division,
     /// Square roots.
     pub square_root: SquareRoot,
-    /// Selections, minima and maxima.
-    pub selection: Selection,
 }
 
 impl Arithmetic {
@@ -99,18 +87,16 @@ pub(crate) enum Helper {
     Fused,
     Quotient,
     Root,
-    Chosen,
 }
 
 impl Helper {
-    const ALL: [Self; 7] = [
+    const ALL: [Self; 6] = [
         Self::Least,
         Self::Greatest,
         Self::Copysign,
         Self::Fused,
         Self::Quotient,
         Self::Root,
-        Self::Chosen,
     ];
 
     pub(crate) const fn name(self) -> &'static str {
@@ -121,7 +107,6 @@ impl Helper {
             Self::Fused => "fused",
             Self::Quotient => "quotient",
             Self::Root => "root",
-            Self::Chosen => "chosen",
         }
     }
 
@@ -132,34 +117,8 @@ impl Helper {
         }
         let (parameters, value) = match self {
             // The second where either is NaN.
-            Self::Least => (
-                "a: f32, b: f32",
-                match arithmetic.selection {
-                    Selection::Numbers => "select(b, a, a < b)",
-                    Selection::Bits => {
-                        "bitcast<f32>(select(bitcast<u32>(b), bitcast<u32>(a), a < b))"
-                    }
-                },
-            ),
-            Self::Greatest => (
-                "a: f32, b: f32",
-                match arithmetic.selection {
-                    Selection::Numbers => "select(b, a, a > b)",
-                    Selection::Bits => {
-                        "bitcast<f32>(select(bitcast<u32>(b), bitcast<u32>(a), a > b))"
-                    }
-                },
-            ),
-            // The second where the condition holds, as `select` has it.
-            Self::Chosen => (
-                "a: f32, b: f32, condition: bool",
-                match arithmetic.selection {
-                    Selection::Numbers => "select(a, b, condition)",
-                    Selection::Bits => {
-                        "bitcast<f32>(select(bitcast<u32>(a), bitcast<u32>(b), condition))"
-                    }
-                },
-            ),
+            Self::Least => ("a: f32, b: f32", "select(b, a, a < b)"),
+            Self::Greatest => ("a: f32, b: f32", "select(b, a, a > b)"),
             Self::Copysign => (
                 "magnitude: f32, sign: f32",
                 "bitcast<f32>((bitcast<u32>(magnitude) & 0x7fffffffu) | (bitcast<u32>(sign) & 0x80000000u))",

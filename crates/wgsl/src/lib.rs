@@ -16,7 +16,7 @@ mod module;
 mod names;
 mod print;
 
-pub use arithmetic::{Arithmetic, Division, Fma, Selection, SquareRoot};
+pub use arithmetic::{Arithmetic, Division, Fma, SquareRoot};
 pub use bindings::Binding;
 pub use functions::{ProgramFunctions, Recorded, SceneFunctions};
 pub use kernel_set::{KernelSet, Mapping};

@@ -1,10 +1,10 @@
 //! One recorded function as WGSL.
 
 use residual_render::domain::tape::{
-    Choice, Function, Id, Kind, Node, Op, Output, ParameterKind, Statement,
+    Choice, Function, Id, Node, Op, Output, ParameterKind, Statement,
 };
 
-use crate::arithmetic::{Arithmetic, Division, Fma, Helper, Selection, SquareRoot};
+use crate::arithmetic::{Arithmetic, Division, Fma, Helper, SquareRoot};
 use crate::bindings::{self, Bindings};
 use crate::names::{constant, kind_name, type_name};
 
@@ -358,14 +358,9 @@ impl Printer<'_> {
             Op::FromBits => call("bitcast<f32>"),
             Op::Not => prefix("!"),
             Op::Select => {
-                let is_of_numbers = self.function.kind(b) == Kind::Real;
-                let select = match self.arithmetic.selection {
-                    Selection::Bits if is_of_numbers => Helper::Chosen.name(),
-                    Selection::Bits | Selection::Numbers => "select",
-                };
                 let [mask, a, b] = [a, b, c].map(|id| self.text(id).text);
                 Text {
-                    text: format!("{select}({b}, {a}, {mask})"),
+                    text: format!("select({b}, {a}, {mask})"),
                     primary: true,
                 }
             }

@@ -164,7 +164,8 @@ fn traverse(org: vec3f, dir: vec3f, tmax: f32, any_hit: bool) -> Hit {
     // Rows of the planes through which the ray enters.
     let rows = vec3u(0u, 2u, 4u) + select(vec3u(0u), vec3u(1u), dir < vec3f(0.0f));
 
-    var stack: array<u32, STACK>;
+    // Children, and where their boxes are entered.
+    var stack: array<vec2u, STACK>;
     var depth = 0u;
     var child = 0u;
     loop {
@@ -241,11 +242,16 @@ fn traverse(org: vec3f, dir: vec3f, tmax: f32, any_hit: bool) -> Hit {
                 }
                 row += PACKET_ROWS;
             }
-            if depth == 0u {
+            child = NONE;
+            // What lies behind the nearest hit by now is left out.
+            while depth > 0u && child == NONE {
+                depth -= 1u;
+                let waiting = stack[depth];
+                child = select(NONE, waiting.x, bitcast<f32>(waiting.y & 0xfffffffcu) <= best.t);
+            }
+            if child == NONE {
                 break;
             }
-            depth -= 1u;
-            child = stack[depth];
             continue;
         }
 
@@ -273,24 +279,29 @@ fn traverse(org: vec3f, dir: vec3f, tmax: f32, any_hit: bool) -> Hit {
         let nearer = min(second, third);
         let farther = max(second, third);
         if first == NONE {
-            if depth == 0u {
+            child = NONE;
+            // What lies behind the nearest hit by now is left out.
+            while depth > 0u && child == NONE {
+                depth -= 1u;
+                let waiting = stack[depth];
+                child = select(NONE, waiting.x, bitcast<f32>(waiting.y & 0xfffffffcu) <= best.t);
+            }
+            if child == NONE {
                 break;
             }
-            depth -= 1u;
-            child = stack[depth];
             continue;
         }
         let children = node + 6u;
         if last != NONE {
-            stack[depth] = bitcast<u32>(tree[children][last & 3u]);
+            stack[depth] = vec2u(bitcast<u32>(tree[children][last & 3u]), last);
             depth += 1u;
         }
         if farther != NONE {
-            stack[depth] = bitcast<u32>(tree[children][farther & 3u]);
+            stack[depth] = vec2u(bitcast<u32>(tree[children][farther & 3u]), farther);
             depth += 1u;
         }
         if nearer != NONE {
-            stack[depth] = bitcast<u32>(tree[children][nearer & 3u]);
+            stack[depth] = vec2u(bitcast<u32>(tree[children][nearer & 3u]), nearer);
             depth += 1u;
         }
         child = bitcast<u32>(tree[children][first & 3u]);
