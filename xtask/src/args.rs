@@ -125,8 +125,8 @@ pub(crate) struct RenderArgs {
     /// How a GPU's work is divided into kernels
     #[arg(long, value_enum, default_value_t = MappingArg::Wavefront)]
     pub(crate) mapping: MappingArg,
-    /// The GPU whose name contains this; cargo xtask adapters lists them [default: the fastest kind]
-    #[arg(long, value_name = "NAME")]
+    /// The GPU whose name contains this, or its number; cargo xtask adapters lists them [default: the fastest kind]
+    #[arg(long, value_name = "NAME|INDEX")]
     pub(crate) adapter: Option<String>,
     /// How the renderer is made from the scene
     #[arg(long, value_enum, default_value_t = TierArg::Auto)]

@@ -94,9 +94,9 @@ pub(crate) fn adapters() -> Result<()> {
     if adapters.is_empty() {
         bail!(residual_device_wgpu::Error::NoAdapter);
     }
-    for adapter in adapters {
-        println!("{adapter}");
-        if let Err(error) = measure(&adapter.name) {
+    for (index, adapter) in adapters.iter().enumerate() {
+        println!("{index}: {adapter}");
+        if let Err(error) = measure(&index.to_string()) {
             println!("    {error}");
         }
     }

@@ -92,19 +92,23 @@ pub fn list_adapters() -> Vec<AdapterDescription> {
 }
 
 impl Gpu {
-    /// The device of the adapter whose name contains `name`, whatever its case, or of the first.
+    /// The device of the adapter whose name contains `name`, whatever its case, or whose place in [`list_adapters`] it is; or
+    /// of the first.
     ///
     /// # Errors
     /// If there is none, or it cannot do what rendering needs.
     pub fn open(name: Option<&str>) -> Result<Self, Error> {
         let adapters = adapters();
-        let is_asked_for = |adapter: &&Adapter| {
+        let is_asked_for = |(index, adapter): &(usize, &Adapter)| {
             name.is_none_or(|name| {
                 let known = adapter.get_info().name.to_lowercase();
-                known.contains(&name.to_lowercase())
+                match name.parse::<usize>() {
+                    Ok(place) => place == *index,
+                    Err(_) => known.contains(&name.to_lowercase()),
+                }
             })
         };
-        let Some(adapter) = adapters.iter().find(is_asked_for) else {
+        let Some((_, adapter)) = adapters.iter().enumerate().find(is_asked_for) else {
             return Err(match name {
                 Some(name) if !adapters.is_empty() => Error::NoSuchAdapter {
                     name: name.to_owned(),

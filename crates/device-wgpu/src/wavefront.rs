@@ -36,7 +36,7 @@ impl Wavefront {
         kernels: &KernelSet,
         state: &State,
     ) -> Result<Self, Error> {
-        let text = |name: &'static str| kernels.text(name).ok_or_else(|| Error::NoKernel { name });
+        let text = |name: &'static str| kernels.text(name).ok_or(Error::NoKernel { name });
         let work = |text: &str, entry: &str| pipeline(gpu, mode, &state.work, text, entry);
         let control = text("control")?;
         let between = |entry: &str| pipeline(gpu, mode, &state.between, control, entry);

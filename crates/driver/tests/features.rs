@@ -25,13 +25,12 @@ fn what_is_built_around_emitted_code_has_nothing_else_built_again() {
     for around in ["residual-compiled-scene", "residual-standalone"] {
         let needed = built_from(around);
         assert!(needed.len() > 10, "{needed:?}");
-        for program in ["xtask", "residual-tests"] {
-            let program = built_from(program);
-            let again: Vec<_> = needed.difference(&program).collect();
-            let [only] = again[..] else {
-                panic!("{again:#?}")
-            };
-            assert!(only.starts_with(&format!("{around} ")), "{only}");
-        }
+        // The command line without its GPU device, which compiles no scenes.
+        let program = built_from("xtask");
+        let again: Vec<_> = needed.difference(&program).collect();
+        let [only] = again[..] else {
+            panic!("{again:#?}")
+        };
+        assert!(only.starts_with(&format!("{around} ")), "{only}");
     }
 }

@@ -100,13 +100,13 @@ fn images_of_any_size() {
     }
 }
 
-/// More pixels than there may be paths under way (2²⁰), so that a sample is put together from two launches.
+/// More pixels than there may be paths under way (2²¹), so that a sample is put together from two launches.
 #[test]
 fn a_sample_of_two_launches() {
     let Some(machine) = exact_machine() else {
         return;
     };
-    let size = [1041, 1013];
+    let size = [1480, 1432];
     let options = PlanOptions {
         size,
         ..PlanOptions::default()
