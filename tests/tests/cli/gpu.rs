@@ -76,7 +76,7 @@ fn adapters_are_listed_with_their_arithmetic() {
     for adapter in list_adapters() {
         assert!(text.contains(&adapter.to_string()), "{text}");
     }
-    assert!(text.contains("plain WGSL: "), "{text}");
+    assert!(text.contains("    plain; "), "{text}");
 }
 
 #[test]
