@@ -173,6 +173,32 @@ mod tests {
     }
 
     #[test]
+    fn drivers_are_told_what_to_keep_in_the_order_of_instructions() {
+        let text = "@compute @workgroup_size(1) fn one() {}
+            @compute @workgroup_size(1) fn two() {}";
+        let words = spirv(text, FloatControls::Preserve).unwrap().words;
+        let mut codes = Vec::new();
+        let mut at = HEADER;
+        while at < words.len() {
+            codes.push(words[at] & 0xffff);
+            at += (words[at] >> 16) as usize;
+        }
+        assert_eq!(at, words.len(), "instructions fill the module");
+        let count = |code| codes.iter().filter(|&&c| c == code).count();
+        // Shader and two; the size of a workgroup and two for each entry point.
+        assert_eq!(count(op::CAPABILITY), 3);
+        assert_eq!(count(op::EXECUTION_MODE), 6);
+        assert_eq!(count(op::EXTENSION), 1);
+        let last = |code| codes.iter().rposition(|&c| c == code).unwrap();
+        let first = |code| codes.iter().position(|&c| c == code).unwrap();
+        assert!(last(op::CAPABILITY) < first(op::EXTENSION));
+        assert!(last(op::ENTRY_POINT) < first(op::EXECUTION_MODE));
+        assert!(last(op::EXECUTION_MODE) < first(op::TYPE_VOID));
+        let plain = spirv(text, FloatControls::Unstated).unwrap().words;
+        assert!(plain.len() < words.len());
+    }
+
+    #[test]
     fn texts_that_are_no_wgsl_are_refused_in_words() {
         let error = spirv("fn main() { let x = ; }", FloatControls::Unstated)
             .err()

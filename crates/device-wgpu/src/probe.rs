@@ -5,9 +5,9 @@
 
 use std::fmt;
 
-use residual_render::domain::Domain as _;
 use residual_render::domain::operations::{Answer, Expression, Operation};
 use residual_render::domain::tape::{Op, Outputs, Record, Tape};
+use residual_render::domain::{Domain as _, FUSES};
 use residual_wgsl::{Arithmetic, Division, Fma, Module, Recorded, SquareRoot, WORKGROUP};
 use wgpu::{BufferUsages, Features};
 
@@ -278,9 +278,6 @@ impl Gpu {
         Ok(Answers(tallies.map(tally).collect()))
     }
 }
-
-/// Whether the processor's domains fuse.
-const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 /// A kernel whose workgroups answer one question each, by their second number.
 fn text(questions: &[Question], rows: u32, arithmetic: Arithmetic) -> String {

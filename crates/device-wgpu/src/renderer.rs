@@ -93,6 +93,7 @@ impl<'g> WgpuRenderer<'g> {
             }
         };
         gpu.check()?;
+        let memory = scene.bytes + state.bytes;
         Ok(Self {
             gpu,
             kernels: compiled,
@@ -102,7 +103,7 @@ impl<'g> WgpuRenderer<'g> {
             cost_map: kernels.shows_traversal.then_some(CostMap),
             slots,
             first_packet: scene.first_packet,
-            memory: scene.bytes + u64::from(slots) * bytes_per_path(stride),
+            memory,
         })
     }
 

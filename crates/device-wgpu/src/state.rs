@@ -29,6 +29,8 @@ pub(crate) fn bytes_per_path(stride: usize) -> u64 {
 
 /// Buffers, bound.
 pub(crate) struct State {
+    /// Bytes of all of them, but for the scene's.
+    pub(crate) bytes: u64,
     /// Group 0 and 1 of the kernels that work on paths.
     pub(crate) scene: BindGroup,
     pub(crate) paths: BindGroup,
@@ -107,6 +109,11 @@ impl State {
             BufferUsages::STORAGE | BufferUsages::INDIRECT,
         );
 
+        let size = |buffer: &wgpu::Buffer| buffer.size();
+        let bytes = [&paths, &shadow_rays, &queues, &samples]
+            .map(size)
+            .iter()
+            .sum();
         let scene_layout = layout(gpu, &[Read, Read, Read, Uniform]);
         let paths_layout = layout(gpu, &[Read, Write, Write, Write, Write, Uniform]);
         let control_layout = layout(gpu, &[Write, Write, Uniform]);
@@ -122,6 +129,7 @@ impl State {
             &settings,
         ];
         Self {
+            bytes,
             scene: group(gpu, &scene_layout, &of_scene),
             paths: group(gpu, &paths_layout, &of_paths),
             work: pipeline_layout(gpu, &[&scene_layout, &paths_layout]),

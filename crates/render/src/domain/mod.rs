@@ -27,7 +27,7 @@ pub mod tape;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
 pub use lanes::{Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES};
-pub use single::{Precise, Scalar, Uint};
+pub use single::{FUSES, Precise, Scalar, Uint};
 
 /// A real number of a domain.
 pub trait Real:

@@ -2,6 +2,9 @@
 
 use super::{Buffer, Buffers, Bundle, Domain};
 
+/// Whether [`Domain::fma`] of [`Scalar`] fuses.
+pub const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+
 /// A domain of single numbers. The two differ in the type of a number, in `fma`, and in that bits are those of an
 /// `f32` in both.
 macro_rules! single {
@@ -152,7 +155,7 @@ single!(
     /// The domain of single `f32` numbers.
     Scalar, f32, |a, b, c| {
         // Without the instruction, `mul_add` is a call into the C library.
-        if cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
+        if FUSES {
             a.mul_add(b, c)
         } else {
             a * b + c
