@@ -117,6 +117,8 @@ const COMMON: &[&str] = &[
     "render/src/light/pick.rs",
     "render/src/material.rs",
     "render/src/math/",
+    // Counters of rays and seconds.
+    "render/src/passes.rs",
     "render/src/record/",
     "render/src/sampler/",
     "render/src/surface/",

@@ -107,11 +107,6 @@ impl<'g> WgpuRenderer<'g> {
         })
     }
 
-    /// The image is of what traversal visits, which depends on the hierarchy.
-    pub fn shows_traversal(&self) -> bool {
-        self.cost_map.is_some()
-    }
-
     /// Runs the kernels once, on few paths: some drivers compile no sooner.
     ///
     /// # Errors

@@ -10,6 +10,7 @@ use residual_device_wgpu::{Dialect, FloatControls, Gpu, Mapping, Mode, Probe, Wg
 use residual_frontend::stats::WgpuReport;
 use residual_render::film::{Film, TILE_SIZE};
 use residual_render::passes::{Counters, Pass, RenderOptions};
+use residual_render::tracer::{DebugView, TracerNode};
 use residual_scenegen::plan::Plan;
 
 /// Where bits may differ: the part of the pixels that may be off by more than [`FAR`], for paths that take another turn.
@@ -139,9 +140,9 @@ impl<'a> GpuPasses<'a> {
     /// # Errors
     /// If the device fails, or its samples are not the processor's.
     pub fn pass(&mut self, film: &mut Film, pass: Pass) -> Result<Counters> {
-        let is_mixed = self.driver.probe.is_exact();
+        // Samples of two kinds would make an image that depends on the time that compilers take.
+        let is_mixed = self.driver.probe.is_exact() && !self.shows_traversal();
         if !is_mixed {
-            // Samples of two kinds would make an image that depends on the time that compilers take.
             self.driver.compile(self.options.size);
         }
         let Some((compiled, _)) = self.driver.compiled.get() else {
@@ -160,6 +161,11 @@ impl<'a> GpuPasses<'a> {
         }
         self.from.get_or_insert(pass.first);
         Ok(renderer.pass(film, pass, &self.options.tracer())?)
+    }
+
+    /// The image is of what traversal visits, which is another matter on each device.
+    fn shows_traversal(&self) -> bool {
+        self.driver.plan.structure.tracer == TracerNode::Debug(DebugView::TraversalCost)
     }
 
     fn on_cpu(&self, film: &mut Film, pass: Pass) -> Counters {
@@ -188,8 +194,7 @@ impl<'a> GpuPasses<'a> {
         let agreement = Agreement::of(&ours, &theirs);
         let Agreement { same, far, pixels } = agreement;
         let adapter = &self.driver.gpu.adapter.name;
-        // Traversal of another hierarchy visits other nodes.
-        let is_comparable = !renderer.shows_traversal();
+        let is_comparable = !self.shows_traversal();
         if is_comparable && far as f64 > MOST_FAR * pixels as f64 {
             bail!(
                 "{adapter}: {far} of {pixels} pixels are far from the processor's in the first samples; \
