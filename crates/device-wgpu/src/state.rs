@@ -105,7 +105,8 @@ impl State {
         let settings = gpu.buffer("settings", size, BufferUsages::UNIFORM);
         let arguments = gpu.buffer(
             "arguments",
-            12 * (2 + queue_count as u64),
+            // For tracing, scattering, each queue and the folded ones.
+            12 * (3 + queue_count as u64),
             BufferUsages::STORAGE | BufferUsages::INDIRECT,
         );
 

@@ -71,7 +71,12 @@ impl KernelSet {
                 texts.insert("emit".to_owned(), kernels.emit());
                 texts.insert("scatter".to_owned(), kernels.scatter());
                 texts.insert("trace".to_owned(), kernels.trace());
-                for queue in kernels.queues_with_steps() {
+                let folded = kernels.folded();
+                if !folded.is_empty() {
+                    texts.insert(FOLDED.to_owned(), kernels.shade_folded());
+                }
+                let alone = |queue: &usize| !folded.contains(queue);
+                for queue in kernels.queues_with_steps().filter(alone) {
                     texts.insert(format!("shade {queue}"), kernels.shade(queue));
                 }
             }
@@ -93,9 +98,11 @@ impl KernelSet {
         self.texts.get(name).map(String::as_str)
     }
 
-    /// The kernels that shade, each with its queue.
+    /// The kernels that shade, each with its queue; the one of folded queues has the number behind them.
     pub fn shade(&self) -> impl Iterator<Item = (usize, &str)> {
-        (0..self.queues).filter_map(|queue| Some((queue, self.text(&format!("shade {queue}"))?)))
+        let alone = |queue| Some((queue, self.text(&format!("shade {queue}"))?));
+        let folded = self.text(FOLDED).map(|text| (self.queues, text));
+        (0..self.queues).filter_map(alone).chain(folded)
     }
 
     /// The names of all kernels with their texts.
@@ -105,7 +112,9 @@ impl KernelSet {
     }
 }
 
-const HEAD: &str = "// residual kernels, version 1: ";
+/// The kernel of the queues whose steps are short.
+const FOLDED: &str = "shade folded";
+const HEAD: &str = "// residual kernels, version 2: ";
 const KERNEL: &str = "// kernel: ";
 
 /// One text, which is read back.

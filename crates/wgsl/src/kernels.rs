@@ -4,16 +4,21 @@ use residual_render::layer::{Layer, Layers};
 use residual_render::program::Structure;
 
 use crate::arithmetic::Arithmetic;
+use crate::calls::{FOLLOWED, QUEUED, QUEUED_IN_CASE, WayOn, call};
 use crate::functions::{Recorded, SceneFunctions};
 use crate::module::Module;
+use crate::sections::sections;
 
 /// Threads of a workgroup.
 pub const WORKGROUP: u32 = 64;
+/// Steps of at most so many lines share a kernel, with everything around them.
+const SHORT: usize = 256;
 /// Nodes that wait on a thread's stack.
 pub const STACK: usize = 64;
 
 const WAVEFRONT: &str = include_str!("wgsl/wavefront.wgsl");
 const CONTROL: &str = include_str!("wgsl/control.wgsl");
+const PLAN: &str = include_str!("wgsl/plan.wgsl");
 const BINDINGS: &str = include_str!("wgsl/kernels.wgsl");
 const PATHS: &str = include_str!("wgsl/paths.wgsl");
 const TRAVERSAL: &str = include_str!("wgsl/traversal.wgsl");
@@ -88,11 +93,37 @@ impl Kernels {
         module
     }
 
-    /// `plan` and `turn`, which one thread runs between the others.
+    /// The queues whose steps are so short that one kernel takes them all; none, or several.
+    pub fn folded(&self) -> Vec<usize> {
+        let is_short = |&queue: &usize| {
+            self.step(queue).is_some_and(|step| {
+                let mut module = Module::new(self.arithmetic);
+                module.add(step);
+                module.finish().lines().count() <= SHORT
+            })
+        };
+        let short: Vec<usize> = (0..self.queues()).filter(is_short).collect();
+        match short.len() {
+            1 => Vec::new(),
+            _ => short,
+        }
+    }
+
+    /// `plan` and `turn`, which one thread runs between the others. Paths of folded queues stand first, side by side.
     pub fn control(&self) -> String {
         let mut module = Module::new(self.arithmetic);
         module.add_text(&self.constants());
         module.add_text(CONTROL);
+        let folded = self.folded();
+        let place = |queue: usize| format!("    start = place({queue}u, start);\n");
+        let others = (0..self.queues()).filter(|queue| !folded.contains(queue));
+        let first: String = folded.iter().map(|&queue| place(queue)).collect();
+        let then: String = others.map(place).collect();
+        module.add_text(
+            &PLAN
+                .replace("//FOLDED\n", &first)
+                .replace("//OTHERS\n", &then),
+        );
         module.finish()
     }
 
@@ -198,35 +229,30 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
         let step = self.step(queue).expect("the queue has a step");
         let mut module = self.module();
         module.add(step);
-        let body = self.take_step(step, &QUEUED);
-        module.add_text(COMPACTION);
-        module.add_text(&format!(
-            "\
-@compute @workgroup_size(WORKGROUP)
-fn shade(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(local_invocation_index) thread: u32,
-) {{
-    clear_counts(thread);
-    var slot: u32;
-    var next = NONE;
-    var shadow = NONE;
-    var shadow_ray: ShadowRay;
-    if id.x < atomicLoad(&queues.counts[{queue}]) {{
-        slot = queues.entries[2u * settings.slots + queues.starts[{queue}] + id.x];
-        let path = paths[slot];
-{body}    }}
-    reserve(thread);
-    if next != NONE {{
-        queues.entries[(1u - queues.side) * settings.slots + next_start + next] = slot;
-    }}
-    if shadow != NONE {{
-        shadow_rays[shadow_start + shadow] = shadow_ray;
-    }}
-}}
-"
-        ));
-        module.finish()
+        let first = format!("queues.starts[{queue}]");
+        let count = format!("atomicLoad(&queues.counts[{queue}])");
+        add_shade(module, &first, &count, &self.take_step(step, &QUEUED))
+    }
+
+    /// `shade`: a step of the paths in the folded queues.
+    ///
+    /// # Panics
+    /// If there are none.
+    pub fn shade_folded(&self) -> String {
+        let folded = self.folded();
+        let last = folded.last().expect("folded queues");
+        let mut module = self.module();
+        let mut body = "        switch path.hit.x {\n".to_owned();
+        for &queue in &folded {
+            let step = self.step(queue).expect("a folded queue has a step");
+            module.add(step);
+            let taken = self.take_step(step, &QUEUED_IN_CASE);
+            body += &format!("            case {queue}u: {{\n{taken}            }}\n");
+        }
+        body += "            default: {\n            }\n        }\n";
+        // They stand first.
+        let count = format!("queues.starts[{last}] + atomicLoad(&queues.counts[{last}])");
+        add_shade(module, "0u", &count, &body)
     }
 
     /// `follow_path`: everything in one kernel.
@@ -297,6 +323,38 @@ fn shade(
     }
 }
 
+/// Adds the kernel that shades `count` of the sorted paths from `first` on.
+fn add_shade(mut module: Module, first: &str, count: &str, body: &str) -> String {
+    module.add_text(COMPACTION);
+    module.add_text(&format!(
+        "\
+@compute @workgroup_size(WORKGROUP)
+fn shade(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(local_invocation_index) thread: u32,
+) {{
+    clear_counts(thread);
+    var slot: u32;
+    var next = NONE;
+    var shadow = NONE;
+    var shadow_ray: ShadowRay;
+    if id.x < {count} {{
+        slot = queues.entries[2u * settings.slots + {first} + id.x];
+        let path = paths[slot];
+{body}    }}
+    reserve(thread);
+    if next != NONE {{
+        queues.entries[(1u - queues.side) * settings.slots + next_start + next] = slot;
+    }}
+    if shadow != NONE {{
+        shadow_rays[shadow_start + shadow] = shadow_ray;
+    }}
+}}
+"
+    ));
+    module.finish()
+}
+
 /// `trace_rays`: ray queries, apart from any scene.
 pub fn rays_kernel(arithmetic: Arithmetic, f64: bool) -> String {
     let mut module = Module::new(arithmetic);
@@ -309,90 +367,4 @@ pub fn rays_kernel(arithmetic: Arithmetic, f64: bool) -> String {
     ));
     module.add_text(RAYS);
     module.finish()
-}
-
-/// How a path goes on: statements on what `step` has.
-struct WayOn {
-    indent: &'static str,
-    shadow: &'static [&'static str],
-    bounce: &'static [&'static str],
-}
-
-/// Through queues.
-const QUEUED: WayOn = WayOn {
-    indent: "        ",
-    shadow: &[
-        "shadow = atomicAdd(&shadow_count, 1u);",
-        "shadow_ray = ShadowRay(step.shadow_org, step.shadow_tmax, step.shadow_dir, slot, step.shadow_contribution);",
-    ],
-    bounce: &[
-        "next = atomicAdd(&next_count, 1u);",
-        "paths[slot] = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, path.depth + 1u, vec4u(0u));",
-    ],
-};
-
-/// In the same thread.
-const FOLLOWED: WayOn = WayOn {
-    indent: "                ",
-    shadow: &[
-        "is_shadow = true;",
-        "shadow = ShadowRay(step.shadow_org, step.shadow_tmax, step.shadow_dir, slot, step.shadow_contribution);",
-    ],
-    bounce: &[
-        "goes_on = true;",
-        "path = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, path.depth + 1u, vec4u(0u));",
-    ],
-};
-
-/// The call of a recorded function where there are `slot`, `path`, or what emission and alpha tests have instead.
-fn call(recorded: &Recorded) -> String {
-    let name = &recorded.function.name;
-    let is_alpha_test = name.ends_with("alpha_test");
-    let argument = |parameter: &str| match parameter {
-        "x" => "place.x",
-        "y" => "place.y",
-        "width" => "settings.width",
-        "height" => "settings.height",
-        "seed" => "settings.seed",
-        "sample" | "index" => "sample_of(slot)",
-        "max_depth" => "settings.max_depth",
-        "roulette_from" => "settings.roulette_from",
-        "reach" => "settings.reach",
-        "prim" if is_alpha_test => "hit.prim",
-        "u" if is_alpha_test => "hit.u",
-        "v" if is_alpha_test => "hit.v",
-        "org" if is_alpha_test => "org",
-        "dir" if is_alpha_test => "dir",
-        "prim" => "path.hit.w",
-        "u" => "bitcast<f32>(path.hit.y)",
-        "v" => "bitcast<f32>(path.hit.z)",
-        "org" => "path.org",
-        "dir" => "path.dir",
-        "throughput" => "path.throughput",
-        "pdf" => "path.pdf",
-        "pixel" => "path.pixel",
-        "depth" => "path.depth",
-        other => unreachable!("no recorded function has a parameter {other}"),
-    };
-    let parameters = &recorded.function.parameters;
-    let arguments: Vec<_> = parameters.iter().map(|p| argument(p.name)).collect();
-    format!("{name}({})", arguments.join(", "))
-}
-
-/// A text with its sections: lines between `//[name` and `//]` stay where the name is among these.
-fn sections(text: &str, names: &[&str]) -> String {
-    let mut kept = String::with_capacity(text.len());
-    let mut is_kept = true;
-    for line in text.lines() {
-        match line.trim().strip_prefix("//[") {
-            Some(name) => is_kept = names.contains(&name),
-            None if line.trim() == "//]" => is_kept = true,
-            None if is_kept => {
-                kept += line;
-                kept.push('\n');
-            }
-            None => {}
-        }
-    }
-    kept
 }

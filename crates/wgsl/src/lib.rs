@@ -9,12 +9,14 @@
 
 mod arithmetic;
 mod bindings;
+mod calls;
 mod functions;
 mod kernel_set;
 mod kernels;
 mod module;
 mod names;
 mod print;
+mod sections;
 
 pub use arithmetic::{Arithmetic, Division, Fma, SquareRoot};
 pub use bindings::Binding;

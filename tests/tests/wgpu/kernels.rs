@@ -74,6 +74,9 @@ fn kernels(structure: &Structure) -> BTreeSet<Kernel> {
         for queue in kernels.queues_with_steps() {
             add("shade", kernels.shade(queue));
         }
+        if !kernels.folded().is_empty() {
+            add("shade", kernels.shade_folded());
+        }
         add("follow_path", kernels.megakernel());
     }
     all

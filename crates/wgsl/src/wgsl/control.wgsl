@@ -10,19 +10,13 @@ fn set_arguments(kernel: u32, threads: u32) {
     arguments[kernel * 3u + 2u] = 1u;
 }
 
-// After rays have been traced: where the paths of each program will stand.
-@compute @workgroup_size(1)
-fn plan() {
-    var start = 0u;
-    for (var k = 0u; k < QUEUES; k++) {
-        let count = atomicLoad(&queues.counts[k]);
-        queues.starts[k] = start;
-        atomicStore(&queues.cursors[k], start);
-        set_arguments(k + 2u, count);
-        start += count;
-    }
-    atomicAdd(&queues.shadow_rays, atomicLoad(&queues.shadows));
-    atomicStore(&queues.shadows, 0u);
+// Gives a queue its place among the sorted paths; returns the next.
+fn place(queue: u32, start: u32) -> u32 {
+    let count = atomicLoad(&queues.counts[queue]);
+    queues.starts[queue] = start;
+    atomicStore(&queues.cursors[queue], start);
+    set_arguments(queue + 2u, count);
+    return start + count;
 }
 
 // After shading: the paths that go on become those to be traced.

@@ -11,7 +11,7 @@ use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 use residual_render::tracer::{DebugView, TracerNode};
-use residual_wgsl::{Binding, function_module, scene_module};
+use residual_wgsl::{Arithmetic, Binding, KernelSet, Mapping, function_module, scene_module};
 
 use crate::naga_checks::{accept, no_dead_code};
 use crate::structures::{bsdfs, color, everything, images, lights, program, scalar, structure};
@@ -194,6 +194,18 @@ fn operations_without_finite_value_are_printed() {
         .real("root", d.sqrt(-one))
         .real("bits", d.from_bits(d.uint(0x7fc0_0000)));
     no_dead_code(&function_module(&tape.function("f", outputs), "Three"));
+}
+
+#[test]
+fn sets_of_kernels_are_read_back() {
+    for mapping in [Mapping::Wavefront, Mapping::Megakernel] {
+        let set = KernelSet::new(&everything(), mapping, true, true, Arithmetic::default());
+        assert!(set.texts().count() >= 1);
+        assert_eq!(set.to_string().parse(), Ok(set));
+    }
+    let foreign = "// residual kernels, version 0: wavefront 0 0 3\n";
+    let error = foreign.parse::<KernelSet>().unwrap_err();
+    assert!(error.contains("emit them anew"), "{error}");
 }
 
 #[test]
