@@ -32,6 +32,12 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             gpu.adapter.name, probe.answers
         );
     }
+    if gpu.adapter.is_software() && !args.render.quiet {
+        eprintln!(
+            "note: {} is a driver that uses the processor; --device cpu is faster",
+            gpu.adapter.name
+        );
+    }
     let (plan, load) = scene::load(&args.scene)?;
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let cpu = CpuDevice::new(args.render.threads).context("starting threads")?;

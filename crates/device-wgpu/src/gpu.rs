@@ -23,6 +23,16 @@ pub struct AdapterDescription {
     pub driver: String,
 }
 
+/// The kind of adapters that are drivers alone.
+const SOFTWARE: &str = "software";
+
+impl AdapterDescription {
+    /// There is no GPU behind it.
+    pub fn is_software(&self) -> bool {
+        self.kind == SOFTWARE
+    }
+}
+
 impl fmt::Display for AdapterDescription {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
@@ -77,7 +87,7 @@ fn describe(adapter: &Adapter) -> AdapterDescription {
             DeviceType::DiscreteGpu => "discrete",
             DeviceType::IntegratedGpu => "integrated",
             DeviceType::VirtualGpu => "virtual",
-            DeviceType::Cpu => "software",
+            DeviceType::Cpu => SOFTWARE,
             DeviceType::Other => "other",
         },
         driver: format!("{} {}", info.driver, info.driver_info)
