@@ -8,7 +8,7 @@ use wgpu::{Adapter, Backends, DeviceType, Features, Limits};
 use crate::error::Error;
 
 /// Storage buffers that a stage binds.
-pub(crate) const STORAGE_BUFFERS: u32 = 8;
+const STORAGE_BUFFERS: u32 = 8;
 
 /// What an adapter is.
 #[derive(Clone, Debug)]
@@ -222,11 +222,6 @@ impl Gpu {
         }
     }
 
-    /// Waits until everything submitted is done.
-    fn wait(&self) -> Result<(), Error> {
-        self.wait_for(None)
-    }
-
     /// Waits until a submission is done, or all of them.
     pub(crate) fn wait_for(
         &self,
@@ -240,10 +235,15 @@ impl Gpu {
         self.check()
     }
 
-    /// A storage buffer with these words, at least one row.
-    pub(crate) fn upload(&self, label: &str, words: &[u32]) -> wgpu::Buffer {
+    /// A buffer with these words, at least one row.
+    pub(crate) fn upload(
+        &self,
+        label: &str,
+        words: &[u32],
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
         let bytes: &[u8] = bytemuck::cast_slice(words);
-        let buffer = self.buffer(label, bytes.len() as u64, wgpu::BufferUsages::STORAGE);
+        let buffer = self.buffer(label, bytes.len() as u64, usage);
         self.queue.write_buffer(&buffer, 0, bytes);
         buffer
     }
@@ -275,21 +275,39 @@ impl Gpu {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
+        let request = MapRequest::new(&staging, size);
+        self.wait_for(None)?;
+        bytes.copy_from_slice(&request.view(self, &staging)?);
+        Ok(())
+    }
+}
+
+/// The first bytes of a buffer on their way into memory.
+pub(crate) struct MapRequest {
+    bytes: u64,
+    failure: Arc<Mutex<Option<wgpu::BufferAsyncError>>>,
+}
+
+impl MapRequest {
+    /// Asks for them; they are there when what was submitted before is done.
+    pub(crate) fn new(buffer: &wgpu::Buffer, bytes: u64) -> Self {
         let failure = Arc::new(Mutex::new(None));
         let answer = Arc::clone(&failure);
-        staging.map_async(wgpu::MapMode::Read, .., move |result| {
+        buffer.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
             if let Err(error) = result {
                 *answer.lock().unwrap_or_else(|poison| poison.into_inner()) = Some(error);
             }
         });
-        self.wait()?;
-        if let Some(error) = &*failure.lock().unwrap_or_else(|poison| poison.into_inner()) {
-            return Err(self.failed(error.to_string()));
+        Self { bytes, failure }
+    }
+
+    /// The bytes, after waiting.
+    pub(crate) fn view(&self, gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, Error> {
+        let failure = self.failure.lock();
+        if let Some(error) = &*failure.unwrap_or_else(|poison| poison.into_inner()) {
+            return Err(gpu.failed(error.to_string()));
         }
-        let mapped = staging
-            .get_mapped_range(..)
-            .map_err(|error| self.failed(error.to_string()))?;
-        bytes.copy_from_slice(&mapped);
-        Ok(())
+        let view = buffer.get_mapped_range(..self.bytes);
+        view.map_err(|error| gpu.failed(error.to_string()))
     }
 }

@@ -243,7 +243,7 @@ impl Gpu {
         for (words, operands) in words.chunks_exact_mut(3 * rows as usize).zip(&operands) {
             words[..3 * operands.len()].copy_from_slice(operands.as_flattened());
         }
-        let from = self.upload("operands", &words);
+        let from = self.upload("operands", &words, BufferUsages::STORAGE);
         let to = self.buffer(
             "answers",
             4 * u64::from(rows) * questions.len() as u64,

@@ -38,7 +38,7 @@ impl<'g> RayQueries<'g> {
             gpu,
             kernel: pipeline(gpu, dialect.mode, &pipelines, &text, "trace_rays")?,
             layout,
-            tree: gpu.upload("tree", &words),
+            tree: gpu.upload("tree", &words, BufferUsages::STORAGE),
             first_packet,
         })
     }
@@ -55,14 +55,13 @@ impl<'g> RayQueries<'g> {
             [ox, oy, oz, any_hit.into(), dx, dy, dz, ray.tmax.to_bits()]
         };
         let rows: Vec<u32> = rays.iter().flat_map(row).collect();
-        let from = self.gpu.upload("rays", &rows);
+        let from = self.gpu.upload("rays", &rows, BufferUsages::STORAGE);
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         let to = self.gpu.buffer("hits", 16 * rays.len() as u64, usage);
-        let settings = self.gpu.buffer("settings", 16, BufferUsages::UNIFORM);
-        let words = [rays.len() as u32, self.first_packet];
-        self.gpu
-            .queue
-            .write_buffer(&settings, 0, bytemuck::cast_slice(&words));
+        let settings = [rays.len() as u32, self.first_packet];
+        let settings = self
+            .gpu
+            .upload("settings", &settings, BufferUsages::UNIFORM);
         let group = group(self.gpu, &self.layout, &[&self.tree, &from, &to, &settings]);
         let clock = Clock::new(self.gpu);
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());

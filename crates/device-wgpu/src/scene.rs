@@ -49,14 +49,9 @@ impl Scene {
             check_size(gpu, what, end)?;
         }
         let bindings = Binding::ALL.map(|binding| merged(gpu, data, binding, &bases));
-        let bases = {
-            let buffer = gpu.buffer("bases", 4 * bases.len() as u64, BufferUsages::UNIFORM);
-            gpu.queue
-                .write_buffer(&buffer, 0, bytemuck::cast_slice(&bases));
-            buffer
-        };
+        let bases = gpu.upload("bases", &bases, BufferUsages::UNIFORM);
         let first_packet = tree.first_packet;
-        let tree = gpu.upload("tree", &tree.words);
+        let tree = gpu.upload("tree", &tree.words, BufferUsages::STORAGE);
         let bytes = bindings.iter().map(wgpu::Buffer::size).sum::<u64>() + tree.size();
         gpu.check()?;
         Ok(Self {

@@ -1,7 +1,5 @@
 //! What kernels of every mapping share: the buffers of a scene, of the paths under way, and of their samples.
 
-use std::sync::{Arc, Mutex};
-
 use bytemuck::Zeroable;
 use residual_wgsl::{Binding, WORKGROUP};
 use wgpu::{BindGroup, BufferUsages, CommandEncoder, PipelineLayout};
@@ -9,7 +7,7 @@ use wgpu::{BindGroup, BufferUsages, CommandEncoder, PipelineLayout};
 use crate::bindings::Access::{Read, Uniform, Write};
 use crate::bindings::{group, layout, pipeline_layout};
 use crate::error::Error;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, MapRequest};
 use crate::launch::Settings;
 use crate::scene::Scene;
 use crate::stages::{Clock, Laps, StageSeconds};
@@ -58,9 +56,8 @@ const SAMPLES_AT: u64 = TICKS_AT + Clock::BYTES;
 pub(crate) struct Launched {
     laps: Laps,
     staging: usize,
-    bytes: u64,
     submission: wgpu::SubmissionIndex,
-    failure: Arc<Mutex<Option<wgpu::BufferAsyncError>>>,
+    request: MapRequest,
 }
 
 /// The first words of the queues: the kernels' `Queues`.
@@ -189,19 +186,12 @@ impl State {
         self.clock.copy(&mut encoder, &laps, to, TICKS_AT);
         encoder.copy_buffer_to_buffer(&self.samples, 0, to, SAMPLES_AT, bytes);
         let submission = gpu.queue.submit([encoder.finish()]);
-        let failure = Arc::new(Mutex::new(None));
-        let answer = Arc::clone(&failure);
-        to.map_async(wgpu::MapMode::Read, ..SAMPLES_AT + bytes, move |result| {
-            if let Err(error) = result {
-                *answer.lock().unwrap_or_else(|poison| poison.into_inner()) = Some(error);
-            }
-        });
+        let request = MapRequest::new(to, SAMPLES_AT + bytes);
         Launched {
             laps,
             staging,
-            bytes,
             submission,
-            failure,
+            request,
         }
     }
 
@@ -217,15 +207,9 @@ impl State {
         samples: impl FnOnce(&[f32]),
     ) -> Result<Header, Error> {
         gpu.wait_for(Some(launched.submission.clone()))?;
-        let failure = &launched.failure;
-        if let Some(error) = &*failure.lock().unwrap_or_else(|poison| poison.into_inner()) {
-            return Err(gpu.failed(error.to_string()));
-        }
         let staging = &self.staging[launched.staging];
         let header = {
-            let mapped = staging
-                .get_mapped_range(..SAMPLES_AT + launched.bytes)
-                .map_err(|error| gpu.failed(error.to_string()))?;
+            let mapped = launched.request.view(gpu, staging)?;
             let (head, of_samples) = mapped.split_at(SAMPLES_AT as usize);
             let (header, ticks) = head.split_at(TICKS_AT as usize);
             self.clock.add(&launched.laps, ticks, seconds);

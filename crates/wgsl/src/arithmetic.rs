@@ -51,15 +51,6 @@ pub struct Arithmetic {
     pub square_root: SquareRoot,
 }
 
-impl Arithmetic {
-    /// Whether some operation is computed in `f64`, which adapters need not have.
-    pub fn needs_f64(self) -> bool {
-        self.fma == Fma::Double
-            || self.division == Division::Double
-            || self.square_root == SquareRoot::Double
-    }
-}
-
 /// The product is exact; `rest` is what the sum has lost (Knuth's two-sum).
 const FUSED_IN_DOUBLE: &str = "\
 fn fused(a: f32, b: f32, c: f32) -> f32 {

@@ -35,6 +35,7 @@ pub struct Kernels {
     layers: Layers,
     traits: Traits,
     arithmetic: Arithmetic,
+    folded: Vec<usize>,
 }
 
 /// What kernels have in them only where it is called for.
@@ -51,12 +52,15 @@ pub struct Traits {
 impl Kernels {
     /// The kernels of a structure.
     pub fn new(structure: &Structure, traits: Traits, arithmetic: Arithmetic) -> Self {
-        Self {
+        let mut kernels = Self {
             functions: SceneFunctions::of(structure),
             layers: structure.layers,
             traits,
             arithmetic,
-        }
+            folded: Vec::new(),
+        };
+        kernels.folded = kernels.short_queues();
+        kernels
     }
 
     /// How many queues of hits there are: one a program, and one for rays that hit nothing.
@@ -94,7 +98,11 @@ impl Kernels {
     }
 
     /// The queues whose steps are so short that one kernel takes them all; none, or several.
-    pub fn folded(&self) -> Vec<usize> {
+    pub fn folded(&self) -> &[usize] {
+        &self.folded
+    }
+
+    fn short_queues(&self) -> Vec<usize> {
         let is_short = |&queue: &usize| {
             self.step(queue).is_some_and(|step| {
                 let mut module = Module::new(self.arithmetic);
@@ -114,7 +122,7 @@ impl Kernels {
         let mut module = Module::new(self.arithmetic);
         module.add_text(&self.constants());
         module.add_text(CONTROL);
-        let folded = self.folded();
+        let folded = &self.folded;
         let place = |queue: usize| format!("    start = place({queue}u, start);\n");
         let others = (0..self.queues()).filter(|queue| !folded.contains(queue));
         let first: String = folded.iter().map(|&queue| place(queue)).collect();
@@ -239,11 +247,11 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
     /// # Panics
     /// If there are none.
     pub fn shade_folded(&self) -> String {
-        let folded = self.folded();
+        let folded = &self.folded;
         let last = folded.last().expect("folded queues");
         let mut module = self.module();
         let mut body = "        switch path.hit.x {\n".to_owned();
-        for &queue in &folded {
+        for &queue in folded {
             let step = self.step(queue).expect("a folded queue has a step");
             module.add(step);
             let taken = self.take_step(step, &QUEUED_IN_CASE);
