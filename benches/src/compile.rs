@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::{Result, anyhow};
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use residual_metrics::Estimate;
+use residual_accuracy::Estimate;
 use serde_json::{Value, json};
 
 use crate::report::interval;

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use residual_device_cpu::{CpuDevice, SceneView, TileRenderer};
-use residual_metrics::Estimate;
+use residual_accuracy::Estimate;
 use residual_render::passes::{Counters, RenderOptions};
 use serde_json::{Value, json};
 

@@ -1,6 +1,6 @@
 //! What is found out, as tables for people and as JSON for programs.
 
-use residual_metrics::Estimate;
+use residual_accuracy::Estimate;
 use serde_json::{Value, json};
 
 use crate::isa::Isa;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use anyhow::{Result, ensure};
-use residual_metrics::Estimate;
+use residual_accuracy::Estimate;
 
 use crate::contender::{Contender, Query};
 use crate::embree::{Embree, EmbreeContender, EmbreeScene, Mode, Quality};

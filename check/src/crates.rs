@@ -23,7 +23,7 @@ const fn row(package: &'static str, may_use: &'static [&'static str]) -> Row {
 /// Who may depend on whom. Each package stands below all that it may depend on, so that there can be no circle.
 pub const TABLE: &[Row] = &[
     row("residual-check", &[]),
-    row("residual-metrics", &[]),
+    row("residual-accuracy", &[]),
     row("residual-bvh", &[]),
     row("residual-render", &["residual-bvh"]),
     row("residual-wgsl", &["residual-render"]),
@@ -50,7 +50,7 @@ pub const TABLE: &[Row] = &[
             "residual-device-cpu",
             "residual-device-wgpu",
             "residual-frontend",
-            "residual-metrics",
+            "residual-accuracy",
             "residual-render",
             "residual-scenegen",
         ],
@@ -62,7 +62,7 @@ pub const TABLE: &[Row] = &[
             "residual-device-cpu",
             "residual-driver",
             "residual-frontend",
-            "residual-metrics",
+            "residual-accuracy",
             "residual-render",
             "residual-scenegen",
             "residual-wgsl",

@@ -12,7 +12,7 @@ use residual_device_cpu::LaneCount;
 use residual_driver::cache::Cache;
 use residual_driver::compile::{Compiler, Origin, library_source};
 use residual_driver::workspace;
-use residual_metrics::Estimate;
+use residual_accuracy::Estimate;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use residual_device_cpu::{Interpreter, LaneCount, SceneView, TileJob, TileRenderer};
-use residual_metrics::Estimate;
+use residual_accuracy::Estimate;
 use residual_render::layer::Layers;
 use residual_render::program::{CameraNode, LightNode, Structure};
 use residual_render::sampler::AnySampler;
