@@ -13,6 +13,7 @@ pub mod code_size;
 pub mod command;
 pub mod compile;
 pub mod contender;
+pub mod coverage;
 pub mod embree;
 pub mod halstead;
 pub mod isa;

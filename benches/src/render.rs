@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use residual_device_cpu::{CpuDevice, SceneView, TileRenderer};
 use residual_accuracy::Estimate;
+use residual_device_cpu::{CpuDevice, SceneView, TileRenderer};
 use residual_render::passes::{Counters, RenderOptions};
 use serde_json::{Value, json};
 
@@ -84,7 +84,7 @@ pub fn renders(
                 clock[index].push(report.elapsed.as_secs_f64());
                 cpu[index].push(used.as_secs_f64());
                 counters[index] += report.counters;
-                errors[index] = film.error().map(|error| error.relmse);
+                errors[index] = film.error().map(|error| error.relmse.value);
                 samples = pixels * film.samples() as f64;
             }
         }

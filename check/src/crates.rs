@@ -25,7 +25,7 @@ pub const TABLE: &[Row] = &[
     row("residual-check", &[]),
     row("residual-accuracy", &[]),
     row("residual-bvh", &[]),
-    row("residual-render", &["residual-bvh"]),
+    row("residual-render", &["residual-accuracy", "residual-bvh"]),
     row("residual-wgsl", &["residual-render"]),
     row("residual-scenegen", &["residual-render"]),
     row("residual-device-cpu", &["residual-bvh", "residual-render"]),
@@ -35,7 +35,10 @@ pub const TABLE: &[Row] = &[
     ),
     // Built around emitted code, which uses nothing but the device.
     row("residual-compiled-scene", &["residual-device-cpu"]),
-    row("residual-frontend", &["residual-bvh", "residual-render"]),
+    row(
+        "residual-frontend",
+        &["residual-accuracy", "residual-bvh", "residual-render"],
+    ),
     row(
         "residual-standalone",
         &[

@@ -130,6 +130,7 @@ impl<'a> Prepared<'a> {
             size: look.size,
             samples: Some(look.samples),
             time: None,
+            error: None,
             max_depth: look.max_depth,
             seed: look.seed,
             reach: look.reach,

@@ -34,6 +34,7 @@ fn job(tile: [u32; 4], samples: [u32; 2]) -> TileJob {
             roulette_from: 3,
             reach: f32::MAX,
         },
+        block: 1,
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use residual_device_cpu::LaneCount;
 use residual_frontend::options::Size;
+use residual_render::sampler::AnySampler;
 
 use crate::isa::Isa;
 use crate::ours::{Kernel, Precision};
@@ -33,6 +34,41 @@ pub(super) enum Command {
     Shading(ShadingArgs),
     /// How soon a scene's renderer is ready: planning, emission, compiling, and from the cache. And the size of our code
     Compile(CompileBenchArgs),
+    /// How true the stated error of renders is: many short ones of different seeds, beside the mean of all
+    Coverage(CoverageArgs),
+}
+
+#[derive(Args)]
+pub(super) struct CoverageArgs {
+    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
+    #[arg(long, value_name = "FILE")]
+    pub(super) scene: Vec<PathBuf>,
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Renders, each with its own seed
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(3..=100_000))]
+    pub(super) runs: u32,
+    /// Samples per pixel at which the error is looked at, with commas between them
+    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "16,64,256", value_parser = clap::value_parser!(u32).range(4..=65536))]
+    pub(super) spp: Vec<u32>,
+    /// Image size
+    #[arg(long, value_name = "WxH", default_value = "128x96")]
+    pub(super) size: Size,
+    /// Random numbers
+    #[arg(long, value_name = "SAMPLER", default_value = "sobol", value_parser = sampler)]
+    pub(super) sampler: AnySampler,
+    /// Threads; 0 is one for each processor
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(super) threads: usize,
+}
+
+fn sampler(name: &str) -> Result<AnySampler, String> {
+    match name {
+        "sobol" => Ok(AnySampler::Sobol),
+        "independent" => Ok(AnySampler::Independent),
+        _ => Err("there are sobol and independent".to_owned()),
+    }
 }
 
 #[derive(Args)]

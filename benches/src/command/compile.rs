@@ -8,11 +8,11 @@ use crate::code_size::{CodeRow, code_lines, code_sizes, code_table};
 use crate::compile::{CompileRow, LibraryRow, compile_heading, compile_summary, validate_wgsl};
 use crate::measure::children_time;
 use anyhow::{Context, Result, ensure};
+use residual_accuracy::Estimate;
 use residual_device_cpu::LaneCount;
 use residual_driver::cache::Cache;
 use residual_driver::compile::{Compiler, Origin, library_source};
 use residual_driver::workspace;
-use residual_accuracy::Estimate;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 

@@ -2,6 +2,7 @@
 
 mod args;
 mod compile;
+mod coverage;
 mod render;
 mod scenes;
 mod shading;
@@ -21,6 +22,7 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Shading(args) => shading::run(&args),
         Command::Compile(args) => compile::run(&args),
+        Command::Coverage(args) => coverage::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

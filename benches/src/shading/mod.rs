@@ -14,8 +14,8 @@ pub mod table;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use residual_device_cpu::{Interpreter, LaneCount, SceneView, TileJob, TileRenderer};
 use residual_accuracy::Estimate;
+use residual_device_cpu::{Interpreter, LaneCount, SceneView, TileJob, TileRenderer};
 use residual_render::layer::Layers;
 use residual_render::program::{CameraNode, LightNode, Structure};
 use residual_render::sampler::AnySampler;
@@ -208,6 +208,7 @@ impl<'a> Contender<'a> {
                 roulette_from: 5,
                 reach: f32::MAX,
             },
+            block: 1,
         };
         let view = SceneView {
             buffers: self.data.buffers(),

@@ -32,7 +32,7 @@ impl<'j> CameraRays<'j> {
         paths: &mut PathStream,
     ) {
         let job = self.job;
-        let rect = job.rect();
+        let (rect, set) = (job.rect(), job.set());
         let (width, height) = (rect.width as usize, rect.height as usize);
         let blocks = (width.div_ceil(SIDE), height.div_ceil(SIDE));
         let places = blocks.0 * blocks.1 * SIDE * SIDE;
@@ -52,8 +52,8 @@ impl<'j> CameraRays<'j> {
                 let column = block % blocks.0 * SIDE + within % SIDE;
                 let row = block / blocks.0 * SIDE + within / SIDE;
                 inside |= u32::from(column < width && row < height) << lane;
-                columns[lane] = rect.x + column as u32;
-                rows[lane] = rect.y + row as u32;
+                let place = [rect.x + column as u32, rect.y + row as u32];
+                [columns[lane], rows[lane]] = set.pixel(job.tracer.seed, place);
                 samples[lane] = ((sample * height + row) * width + column) as u32;
             }
             let pixel = [&columns, &rows].map(|places| d.word(&places[..D::LANES]));

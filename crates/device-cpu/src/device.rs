@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use residual_render::film::{Film, TILE_SIZE};
+use residual_render::film::{Film, FilmTile, SampleSet, TILE_SIZE};
 use residual_render::passes::{
     Counters, Pass, Progress, RenderOptions, RenderReport, render_passes,
 };
@@ -48,7 +48,7 @@ impl CpuDevice {
         self.pool.current_num_threads()
     }
 
-    /// Adds a pass of samples to a film that has the renderer's layers.
+    /// Adds a pass of samples to a film that has the renderer's layers, and to its second set.
     ///
     /// # Panics
     /// If the film has others.
@@ -60,17 +60,31 @@ impl CpuDevice {
         film: &mut Film,
         pass: Pass,
     ) -> Counters {
+        let (first, second) = film.sets_mut();
+        let mut tiles: Vec<_> = first.iter_mut().map(|t| (SampleSet::First, t)).collect();
+        tiles.extend(second);
+        self.tiles(renderer, scene, options, tiles, pass)
+    }
+
+    /// Adds a pass of samples to tiles of a film that has the renderer's layers.
+    ///
+    /// # Panics
+    /// If the film has others.
+    pub fn tiles(
+        &self,
+        renderer: &dyn TileRenderer,
+        scene: &SceneView<'_>,
+        options: &RenderOptions,
+        tiles: Vec<(SampleSet, &mut FilmTile)>,
+        pass: Pass,
+    ) -> Counters {
         let layers = renderer.layers();
-        assert_eq!(film.layers(), layers, "one film, one set of layers");
         let counters = Mutex::new(Counters::default());
         self.pool.install(|| {
-            film.tiles_mut().par_iter_mut().for_each(|tile| {
+            tiles.into_par_iter().for_each(|(set, tile)| {
+                assert_eq!(tile.layers(), layers, "one film, one set of layers");
                 let rect = tile.rect();
-                let job = TileJob {
-                    tile: [rect.x, rect.y, rect.width, rect.height],
-                    samples: [pass.first, pass.count],
-                    tracer: options.tracer(),
-                };
+                let job = TileJob::new(rect, set, pass, options.tracer(set));
                 let mut samples = vec![0.0; rect.area() * layers.stride() * pass.count as usize];
                 let mut did = renderer.render_tile(scene, &job, &mut samples);
                 let film_start = Instant::now();
@@ -93,7 +107,8 @@ impl CpuDevice {
         progress: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> (Film, RenderReport) {
         let [width, height] = options.size;
-        let mut film = Film::new(width, height, self.tile_size, renderer().layers());
+        let film = Film::new(width, height, self.tile_size, renderer().layers());
+        let mut film = film.with_second_set(options.seed);
         let pass = |film: &mut Film, pass| {
             Ok::<_, Infallible>(self.pass(renderer(), scene, options, film, pass))
         };

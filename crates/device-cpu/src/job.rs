@@ -1,9 +1,9 @@
 //! What a renderer of tiles is asked for, and what it reports.
 
 use residual_render::domain::Buffers;
-use residual_render::film::TileRect;
+use residual_render::film::{SampleSet, TileRect};
 use residual_render::layer::Layers;
-use residual_render::passes::Counters;
+use residual_render::passes::{Counters, Pass};
 use residual_render::tracer::TracerOptions;
 
 use crate::traversal::Traversal;
@@ -18,11 +18,34 @@ pub struct TileJob {
     pub samples: [u32; 2],
     /// What the tracer is told.
     pub tracer: TracerOptions,
+    /// Pixels along the side of the blocks of which each has one of the tile's pixels; 1 if the tile is of the image.
+    pub block: u32,
 }
 
-const _: () = assert!(size_of::<TileJob>() == 48);
+const _: () = assert!(size_of::<TileJob>() == 52);
 
 impl TileJob {
+    /// The job of a tile of a set of samples.
+    pub fn new(rect: TileRect, set: SampleSet, pass: Pass, tracer: TracerOptions) -> Self {
+        Self {
+            tile: [rect.x, rect.y, rect.width, rect.height],
+            samples: [pass.first, pass.count],
+            tracer,
+            block: match set {
+                SampleSet::First => 1,
+                SampleSet::Second { block } => block,
+            },
+        }
+    }
+
+    /// The set of samples that the tile is of.
+    pub fn set(&self) -> SampleSet {
+        match self.block {
+            1 => SampleSet::First,
+            block => SampleSet::Second { block },
+        }
+    }
+
     /// The tile as a rectangle.
     pub fn rect(&self) -> TileRect {
         let [x, y, width, height] = self.tile;

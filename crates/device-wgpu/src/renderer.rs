@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use residual_bvh::Bvh;
-use residual_render::film::Film;
+use residual_render::film::FilmTile;
 use residual_render::layer::Layers;
 use residual_render::passes::{Counters, MAX_PASS, Pass};
 use residual_render::program::Structure;
@@ -154,13 +154,13 @@ impl<'g> WgpuRenderer<'g> {
         self.memory
     }
 
-    /// Adds a pass of samples to a film.
+    /// Adds a pass of samples to a film's tiles, which cover the image.
     ///
     /// # Errors
     /// If the device fails; the film then has none of the samples of the batch that failed.
     pub fn pass(
         &self,
-        film: &mut Film,
+        film: &mut [FilmTile],
         pass: Pass,
         options: &TracerOptions,
     ) -> Result<Counters, Error> {
@@ -208,7 +208,7 @@ impl<'g> WgpuRenderer<'g> {
     fn finish(
         &self,
         launched: &Launched,
-        film: &mut Film,
+        film: &mut [FilmTile],
         parts: &mut Vec<f32>,
         counters: &mut Counters,
         seconds: &mut StageSeconds,
@@ -235,9 +235,9 @@ impl<'g> WgpuRenderer<'g> {
     }
 
     /// Adds whole samples, `values[sample][place][channel]`.
-    fn add_to(&self, film: &mut Film, values: &[f32]) {
+    fn add_to(&self, film: &mut [FilmTile], values: &[f32]) {
         let stride = self.layers.stride();
-        film.tiles_mut().par_iter_mut().for_each(|tile| {
+        film.par_iter_mut().for_each(|tile| {
             let rect = tile.rect();
             let mut of_tile = Vec::with_capacity(rect.area() * stride);
             for sample in values.chunks_exact(self.places.count() as usize * stride) {

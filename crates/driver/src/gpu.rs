@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
 use residual_device_wgpu::{Dialect, FloatControls, Gpu, Mapping, Mode, Probe, WgpuRenderer};
 use residual_frontend::stats::WgpuReport;
-use residual_render::film::{Film, TILE_SIZE};
+use residual_render::film::{Film, FilmTile, SampleSet, TILE_SIZE};
 use residual_render::passes::{Counters, Pass, RenderOptions};
 use residual_render::tracer::{DebugView, TracerNode};
 use residual_scenegen::plan::Plan;
@@ -160,12 +160,27 @@ impl<'a> GpuPasses<'a> {
             self.compare(renderer)?;
         }
         self.from.get_or_insert(pass.first);
-        Ok(renderer.pass(film, pass, &self.options.tracer())?)
+        // The second set of samples, of few pixels, is the processor's: it would leave most of a GPU idle.
+        let (first, second) = film.sets_mut();
+        let (of_second, of_first) = std::thread::scope(|scope| {
+            let of_second = scope.spawn(|| self.second(second, pass));
+            let of_first = renderer.pass(first, pass, &self.options.tracer(SampleSet::First));
+            (of_second.join().expect("no tile panicked"), of_first)
+        });
+        let mut counters = of_first?;
+        counters.count_rays_of(&of_second);
+        Ok(counters)
     }
 
     /// The image is of what traversal visits, which is another matter on each device.
     fn shows_traversal(&self) -> bool {
         self.driver.plan.structure.tracer == TracerNode::Debug(DebugView::TraversalCost)
+    }
+
+    /// The second set of samples.
+    fn second(&self, tiles: Vec<(SampleSet, &mut FilmTile)>, pass: Pass) -> Counters {
+        let (renderer, scene) = (&self.interpreter, &self.view);
+        self.cpu.tiles(renderer, scene, self.options, tiles, pass)
     }
 
     fn on_cpu(&self, film: &mut Film, pass: Pass) -> Counters {
@@ -190,7 +205,11 @@ impl<'a> GpuPasses<'a> {
             film
         });
         let mut theirs = film();
-        renderer.pass(&mut theirs, FIRST, &self.options.tracer())?;
+        renderer.pass(
+            theirs.tiles_mut(),
+            FIRST,
+            &self.options.tracer(SampleSet::First),
+        )?;
         let agreement = Agreement::of(&ours, &theirs);
         let Agreement { same, far, pixels } = agreement;
         let adapter = &self.driver.gpu.adapter.name;

@@ -7,10 +7,10 @@
 use std::ops::ControlFlow;
 
 use anyhow::{Context, Result};
+use residual_accuracy::{Estimate, Jackknifed, flip, relative_mse};
 use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileRenderer};
 use residual_frontend::{hierarchy_quality, process_time};
-use residual_accuracy::{Estimate, Jackknifed, flip, relative_mse};
 use residual_render::passes::{Progress, RenderOptions};
 use residual_render::program::{AlphaTestNode, BsdfNode, LightNode, Program, ScalarNode};
 use residual_render::surface::Attributes;

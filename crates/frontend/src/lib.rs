@@ -1,9 +1,10 @@
 //! What every program that renders shares, be it the command line or the renderer of a single scene: [`options`], a
-//! [`session`] with progress, interruption and images on the way, [statistics](stats), and image files ([`output`]).
+//! [`session`] with progress, interruption and images on the way, [statistics](stats), the [precision] reached, and image files ([`output`]).
 
 mod clock;
 pub mod options;
 pub mod output;
+pub mod precision;
 mod rendered;
 pub mod session;
 pub mod stats;

@@ -15,12 +15,15 @@ pub struct RenderArgs {
     /// Image file (.png, .exr); may be given more than once
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Samples per pixel [default: 64, or as many as --time allows]
+    /// Samples per pixel [default: 64, or as many as --time and --error allow]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
     /// Stop after this time (30s, 2m, 500ms)
     #[arg(long, value_name = "TIME", value_parser = duration)]
     pub time: Option<Duration>,
+    /// Stop when the relative error is below this (1%, 0.01) with 97.5 % confidence; the first of --spp, --time and --error ends
+    #[arg(long, value_name = "ERROR", value_parser = relative_error)]
+    pub error: Option<f64>,
     /// Most vertices of a path: 1 is emission seen directly, 2 adds direct light
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub max_depth: u32,
@@ -45,10 +48,12 @@ pub struct RenderArgs {
 impl RenderArgs {
     /// What the device is told; `reach` is used where none is asked for.
     pub fn render_options(&self, size: [u32; 2], reach: f32) -> RenderOptions {
+        let is_endless = self.time.is_none() && self.error.is_none();
         RenderOptions {
             size,
-            samples: self.spp.or(self.time.is_none().then_some(DEFAULT_SAMPLES)),
+            samples: self.spp.or(is_endless.then_some(DEFAULT_SAMPLES)),
             time: self.time,
+            error: self.error,
             max_depth: self.max_depth,
             seed: self.seed,
             reach: self.reach.unwrap_or(reach),
@@ -99,6 +104,18 @@ fn distance(text: &str) -> Result<f32, String> {
     distance.ok_or_else(|| "expected a distance above 0".to_owned())
 }
 
+fn relative_error(text: &str) -> Result<f64, String> {
+    let (number, scale) = match text.strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    let error = number.trim().parse::<f64>().ok().map(|x| x * scale);
+    // Below a hundred-thousandth, 32-bit samples themselves are not so precise.
+    error
+        .filter(|error| (1e-5..=1.0).contains(error))
+        .ok_or_else(|| "expected a relative error from 0.001% to 100%, as in 1% or 0.01".to_owned())
+}
+
 fn duration(text: &str) -> Result<Duration, String> {
     let units = [
         ("ms", 1e-3),
@@ -132,6 +149,11 @@ mod tests {
         assert_eq!(duration("2m"), Ok(Duration::from_secs(120)));
         assert_eq!(distance("0.5"), Ok(0.5));
         assert!(distance("0").is_err() && distance("inf").is_err() && distance("far").is_err());
+        assert_eq!(relative_error("1%"), Ok(0.01));
+        assert_eq!(relative_error("0.05"), Ok(0.05));
+        for wrong in ["0", "-1%", "101%", "%", "nan", "small"] {
+            assert!(relative_error(wrong).is_err(), "{wrong}");
+        }
         assert!(duration("-1s").is_err() && duration("soon").is_err());
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use exr::prelude::*;
+use residual_accuracy::{ErrorEstimate, Interval};
 use residual_render::film::Film;
 use residual_render::layer::Layers;
 use residual_render::texture::srgb_code;
@@ -17,8 +18,8 @@ pub struct Metadata {
     pub samples: u64,
     /// Time of rendering.
     pub seconds: f64,
-    /// Estimated relative mean squared error.
-    pub relmse: Option<f64>,
+    /// The error of these samples.
+    pub error: Option<ErrorEstimate>,
 }
 
 /// Refuses file names that [`write()`] would refuse, before any work is done.
@@ -174,8 +175,14 @@ fn open_exr(film: &Film, metadata: &Metadata) -> Result<Vec<u8>> {
         "scene={} spp={} seconds={:.3}",
         metadata.scene, metadata.samples, metadata.seconds
     );
-    if let Some(relmse) = metadata.relmse {
-        comment.push_str(&format!(" relmse={relmse:.3e}"));
+    if let Some(error) = metadata.error {
+        let Interval { value, low, high } = error.relmse;
+        comment.push_str(&format!(
+            " relmse={value:.3e} relmse95={low:.3e}..{high:.3e}"
+        ));
+        if error.distrust.is_some() {
+            comment.push_str(" untrustworthy");
+        }
     }
     attributes.comments = Text::new_or_none(&comment);
     let channels = AnyChannels::sort(channels);
@@ -204,7 +211,7 @@ mod tests {
             scene: "s".into(),
             samples: 1,
             seconds: 1.0,
-            relmse: None,
+            error: None,
         };
         let png = directory.path().join("a.png");
         write(&png, &film(), &metadata).unwrap();
@@ -240,7 +247,7 @@ mod tests {
             scene: "s".into(),
             samples: 1,
             seconds: 1.0,
-            relmse: None,
+            error: None,
         };
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.exr");

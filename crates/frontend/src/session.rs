@@ -9,12 +9,14 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
+use residual_accuracy::{Convergence, Measured};
 use residual_render::film::{Film, TILE_SIZE};
 use residual_render::layer::Layers;
 use residual_render::passes::{Counters, Pass, Progress, RenderOptions, render_passes};
 
 use crate::options::{RenderArgs, StatsFormat};
 use crate::output::{self, Metadata};
+use crate::precision;
 use crate::process_time;
 use crate::rendered::Rendered;
 use crate::stats::Statistics;
@@ -77,12 +79,21 @@ impl<'a> Session<'a> {
                 Some(_) => bar.set_position(u64::from(progress.samples)),
                 None => bar.set_position(progress.elapsed.as_millis() as u64),
             }
-            bar.set_message(format!("{} spp", progress.samples));
+            bar.set_message(match progress.convergence.last() {
+                Some(last) => format!(
+                    "{} spp, error {}",
+                    progress.samples,
+                    precision::percent(last.error.relmse.value)
+                ),
+                None => format!("{} spp", progress.samples),
+            });
             after_pass(&progress);
             let is_last = options.samples == Some(progress.samples);
             if !is_last && progress.elapsed >= next_image {
                 let start = Instant::now();
-                if let Err(error) = self.write(scene, progress.film, progress.elapsed) {
+                if let Err(error) =
+                    self.write(scene, progress.film, progress.elapsed, progress.convergence)
+                {
                     failed = Some(error);
                     return ControlFlow::Break(());
                 }
@@ -97,7 +108,8 @@ impl<'a> Session<'a> {
         };
         let before = process_time();
         let [width, height] = options.size;
-        let mut film = Film::new(width, height, TILE_SIZE, layers);
+        let film = Film::new(width, height, TILE_SIZE, layers);
+        let mut film = film.with_second_set(options.seed);
         let (report, outcome) = render_passes(options, &mut film, pass, show);
         let cpu = process_time() - before;
         bar.finish_and_clear();
@@ -109,7 +121,7 @@ impl<'a> Session<'a> {
             // What there is stays, whatever comes of the rest.
             return Err(match film.samples() {
                 0 => error,
-                samples => match self.write(scene, &film, report.elapsed) {
+                samples => match self.write(scene, &film, report.elapsed, &report.convergence) {
                     Ok(()) => error.context(format!(
                         "rendering ended early; the image has {samples} samples per pixel"
                     )),
@@ -117,7 +129,7 @@ impl<'a> Session<'a> {
                 },
             });
         }
-        self.write(scene, &film, report.elapsed)?;
+        self.write(scene, &film, report.elapsed, &report.convergence)?;
         let first_image = first_image.unwrap_or_else(|| self.start.elapsed());
         Ok(Rendered {
             film,
@@ -127,12 +139,19 @@ impl<'a> Session<'a> {
         })
     }
 
-    fn write(&self, scene: &str, film: &Film, elapsed: Duration) -> Result<()> {
+    fn write(
+        &self,
+        scene: &str,
+        film: &Film,
+        elapsed: Duration,
+        convergence: &Convergence,
+    ) -> Result<()> {
+        let of_these = |last: &&Measured| last.samples == film.samples();
         let metadata = Metadata {
             scene: scene.to_owned(),
             samples: film.samples(),
             seconds: elapsed.as_secs_f64(),
-            relmse: film.error().map(|error| error.relmse),
+            error: convergence.last().filter(of_these).map(|last| last.error),
         };
         self.outputs
             .iter()
@@ -164,13 +183,8 @@ impl<'a> Session<'a> {
             files.join(", "),
             film.samples()
         );
-        if let Some(error) = film.error() {
-            // Relative RMS error; it halves in four times the time.
-            let (error, ci) = (error.relmse, error.ci95);
-            eprintln!(
-                "relative mean squared error {error:.2e} ± {ci:.1e}; a quarter of it: 4.0× the time, {:.0} s",
-                4.0 * seconds
-            );
+        for line in precision::lines(&statistics.rendered.report.convergence) {
+            eprintln!("{line}");
         }
         if film.invalid_samples() > 0 {
             eprintln!(

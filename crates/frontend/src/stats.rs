@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
+use crate::precision;
 use crate::process_time;
 use crate::rendered::Rendered;
 
@@ -182,7 +183,6 @@ impl Statistics<'_> {
         let rays = c.camera_rays + c.bounce_rays + c.shadow_rays;
         let film = &self.rendered.film;
         let preparation = &self.preparation;
-        let error = film.error();
         json!({
             "scene": self.scene.name,
             "device": self.device.name(),
@@ -215,7 +215,7 @@ impl Statistics<'_> {
             "programs": self.scene.programs,
             "effects": self.scene.effects,
             "mean": film.mean(),
-            "error": error.map(|e| json!({ "relmse": e.relmse, "ci95": e.ci95 })),
+            "error": precision::json(&self.rendered.report.convergence),
             "invalid_samples": film.invalid_samples(),
             "memory_mib": {
                 "scene": mib(self.scene.bytes),

@@ -19,6 +19,7 @@ fn what_there_was_before_is_written_and_the_failure_told() {
         output: vec![image.clone()],
         spp: Some(8),
         time: None,
+        error: None,
         max_depth: 8,
         seed: 0,
         reach: None,

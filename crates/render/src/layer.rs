@@ -13,12 +13,23 @@ pub enum Reduction {
     Mean,
     /// The first sample as it is: means of indices and of places on two objects mean nothing.
     First,
-    /// How many there are; samples themselves hold nothing of it.
+    /// What is known of all of them; no sample holds any of it.
+    Statistic(Statistic),
+}
+
+/// What is known of a pixel's samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Statistic {
+    /// How many there are.
     Count,
+    /// Variance of one of them.
+    Variance,
+    /// Standard error of their mean.
+    StandardError,
 }
 
 macro_rules! layers {
-    ($($(#[doc = $doc:literal])* $layer:ident = $name:literal, $channels:expr, $reduction:ident;)*) => {
+    ($($(#[doc = $doc:literal])* $layer:ident = $name:literal, $channels:expr, $reduction:expr;)*) => {
         /// A layer that samples fill, beside radiance.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Layer {
@@ -41,14 +52,14 @@ macro_rules! layers {
 
             /// How its samples are combined.
             pub const fn reduction(self) -> Reduction {
-                match self { $(Self::$layer => Reduction::$reduction,)* }
+                match self { $(Self::$layer => $reduction,)* }
             }
 
             /// How many numbers of a sample are its.
             const fn width(self) -> usize {
                 match self.reduction() {
                     Reduction::Mean | Reduction::First => self.channels().len(),
-                    Reduction::Count => 0,
+                    Reduction::Statistic(_) => 0,
                 }
             }
         }
@@ -57,19 +68,23 @@ macro_rules! layers {
 
 layers! {
     /// How much light the surface seen first reflects, in [0, 1], as denoisers want it; 0 where nothing is seen.
-    Albedo = "albedo", ["R", "G", "B"], Mean;
+    Albedo = "albedo", ["R", "G", "B"], Reduction::Mean;
     /// Its shading normal, world space, on the side of the eye; 0 where nothing is seen.
-    Normal = "normal", ["X", "Y", "Z"], Mean;
+    Normal = "normal", ["X", "Y", "Z"], Reduction::Mean;
     /// Distance from the origin of the camera ray; [`FAR`] where nothing is seen.
-    Depth = "depth", ["Z"], First;
+    Depth = "depth", ["Z"], Reduction::First;
     /// The point seen, world space.
-    Position = "position", ["X", "Y", "Z"], First;
+    Position = "position", ["X", "Y", "Z"], Reduction::First;
     /// Index of the object (an instance of a mesh), counted from 1; 0 where nothing is seen.
-    ObjectIndex = "object_index", ["X"], First;
+    ObjectIndex = "object_index", ["X"], Reduction::First;
     /// Index of the material in the file, counted from 1; 0 where nothing is seen.
-    MaterialIndex = "material_index", ["X"], First;
+    MaterialIndex = "material_index", ["X"], Reduction::First;
     /// How many samples the pixel has.
-    SampleCount = "sample_count", ["X"], Count;
+    SampleCount = "sample_count", ["X"], Reduction::Statistic(Statistic::Count);
+    /// Variance of one sample of the pixel, of red, green, blue and luminance.
+    Variance = "variance", ["R", "G", "B", "Y"], Reduction::Statistic(Statistic::Variance);
+    /// Standard error of the pixel: the root of the mean squared difference to the true image that is to be expected.
+    StandardError = "standard_error", ["R", "G", "B", "Y"], Reduction::Statistic(Statistic::StandardError);
 }
 
 /// The depth of nothing: compositors expect a large finite number.

@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use crate::film::Film;
+use residual_accuracy::{Convergence, ErrorEstimate, Measured};
+
+use crate::film::{Film, SampleSet};
 use crate::tracer::TracerOptions;
 
 /// Passes grow until one takes about this long, so that progress is shown, time limits are kept and a wish to stop is
@@ -23,6 +25,9 @@ pub struct RenderOptions {
     pub samples: Option<u32>,
     /// Stop after the pass in which this much time has gone by.
     pub time: Option<Duration>,
+    /// Stop as soon as the relative error is below this one with 97.5 % confidence: the root of the relative mean squared
+    /// error, as in 0.01 for 1 %.
+    pub error: Option<f64>,
     /// Most vertices a path may have; 1 is emission seen directly, 2 adds direct light.
     pub max_depth: u32,
     /// Seed of the random numbers.
@@ -38,6 +43,7 @@ impl Default for RenderOptions {
             size: [640, 480],
             samples: Some(64),
             time: None,
+            error: None,
             max_depth: 8,
             seed: 0,
             reach: f32::MAX,
@@ -46,11 +52,11 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// What the tracer is told.
-    pub fn tracer(&self) -> TracerOptions {
+    /// What the tracer is told of a set of samples.
+    pub fn tracer(&self, set: SampleSet) -> TracerOptions {
         TracerOptions {
             image: self.size,
-            seed: self.seed,
+            seed: set.seed(self.seed),
             max_depth: self.max_depth,
             roulette_from: ROULETTE_FROM,
             reach: self.reach,
@@ -67,6 +73,8 @@ pub struct Progress<'a> {
     pub elapsed: Duration,
     /// The image so far.
     pub film: &'a Film,
+    /// Its error after some of these samples, and how it falls.
+    pub convergence: &'a Convergence,
 }
 
 /// What was done.
@@ -76,6 +84,15 @@ pub struct RenderReport {
     pub counters: Counters,
     /// Time on the clock.
     pub elapsed: Duration,
+    /// The error on the way and at the end.
+    pub convergence: Convergence,
+}
+
+impl RenderReport {
+    /// The error at the end; `None` if there are too few samples to say.
+    pub fn error(&self) -> Option<ErrorEstimate> {
+        self.convergence.last().map(|last| last.error)
+    }
 }
 
 /// What was done, and how long each stage took: thread seconds of processors, or seconds of a GPU.
@@ -119,11 +136,18 @@ impl Counters {
     }
 }
 
-impl std::ops::AddAssign for Counters {
-    fn add_assign(&mut self, o: Self) {
+impl Counters {
+    /// Adds rays of another device, whose time is not this one's.
+    pub fn count_rays_of(&mut self, o: &Self) {
         self.camera_rays += o.camera_rays;
         self.bounce_rays += o.bounce_rays;
         self.shadow_rays += o.shadow_rays;
+    }
+}
+
+impl std::ops::AddAssign for Counters {
+    fn add_assign(&mut self, o: Self) {
+        self.count_rays_of(&o);
         self.emit += o.emit;
         self.trace_camera += o.trace_camera;
         self.trace_bounce += o.trace_bounce;
@@ -143,6 +167,17 @@ pub struct Pass {
     pub count: u32,
 }
 
+/// Adds the film's error, if it has one.
+fn measure(convergence: &mut Convergence, film: &Film, elapsed: Duration) {
+    if let Some(error) = film.error() {
+        convergence.add(Measured {
+            samples: film.samples(),
+            seconds: elapsed.as_secs_f64(),
+            error,
+        });
+    }
+}
+
 /// Renders into a film until the options say stop. `pass` adds a pass of samples; it may fail, and the film is then what
 /// there was before. `progress`, called after each pass, may break: the film is then what there is so far.
 pub fn render_passes<E>(
@@ -153,6 +188,8 @@ pub fn render_passes<E>(
 ) -> (RenderReport, Result<(), E>) {
     let start = Instant::now();
     let mut counters = Counters::default();
+    let mut convergence = Convergence::default();
+    let target = options.error.map(|error| error * error);
     let (mut done, mut size) = (0, 1);
     let mut outcome = Ok(());
     loop {
@@ -160,7 +197,11 @@ pub fn render_passes<E>(
             .samples
             .map_or(u32::MAX, |samples| samples.saturating_sub(done));
         let late = options.time.is_some_and(|time| start.elapsed() >= time);
-        if left == 0 || (late && done > 0) {
+        let estimate = convergence.last().map(|last| last.error.relmse.high);
+        let precise = target
+            .zip(estimate)
+            .is_some_and(|(target, high)| high <= target);
+        if left == 0 || (late && done > 0) || precise {
             break;
         }
         let next = Pass {
@@ -176,21 +217,31 @@ pub fn render_passes<E>(
             }
         }
         done += next.count;
+        if convergence.is_due(u64::from(done), target) {
+            measure(&mut convergence, film, start.elapsed());
+        }
         let so_far = Progress {
             samples: done,
             elapsed: start.elapsed(),
             film,
+            convergence: &convergence,
         };
         if progress(so_far).is_break() {
             break;
         }
         if pass_start.elapsed() < PASS_TIME {
-            size = (size * 2).min(MAX_PASS);
+            // To powers of two, at which well-distributed points are complete.
+            size = done.min(MAX_PASS);
         }
+    }
+    let last = convergence.last().map_or(0, |last| last.samples);
+    if film.samples() > last {
+        measure(&mut convergence, film, start.elapsed());
     }
     let report = RenderReport {
         counters,
         elapsed: start.elapsed(),
+        convergence,
     };
     (report, outcome)
 }

@@ -11,7 +11,7 @@ use anyhow::{Context, Result};
 use residual_bvh::{BuildQuality, build};
 use residual_device_wgpu::wgpu::{self, Backends};
 use residual_device_wgpu::{Gpu, KernelSet, Mode, WgpuRenderer};
-use residual_render::film::{Film, TILE_SIZE};
+use residual_render::film::{Film, SampleSet, TILE_SIZE};
 use residual_render::passes::{RenderOptions, render_passes};
 use residual_render::texture::srgb_code;
 use residual_scenegen::import::{ImportOptions, import};
@@ -52,7 +52,9 @@ fn main() -> Result<()> {
     };
     let [width, height] = options.size;
     let mut film = Film::new(width, height, TILE_SIZE, kernels.layers);
-    let pass = |film: &mut Film, pass| renderer.pass(film, pass, &job.tracer());
+    let pass = |film: &mut Film, pass| {
+        renderer.pass(film.tiles_mut(), pass, &job.tracer(SampleSet::First))
+    };
     let (report, outcome) = render_passes(&job, &mut film, pass, |_| ControlFlow::Continue(()));
     outcome?;
 

@@ -44,7 +44,7 @@ fn luminance(film: &Film) -> [f64; 2] {
     let [r, g, b] = film.mean();
     let mean = 0.2126 * r + 0.7152 * g + 0.0722 * b;
     let pixels = f64::from(film.width()) * f64::from(film.height());
-    let relmse = film.error().expect("samples").relmse;
+    let relmse = film.error().expect("samples").relmse.value;
     [mean, mean * (relmse / pixels).sqrt()]
 }
 

@@ -3,7 +3,7 @@
 //! at is what renders. No adapter is needed.
 
 use residual_render::domain::{Buffer, Buffers};
-use residual_render::film::Film;
+use residual_render::film::{Film, SampleSet};
 use residual_render::layer::Layer;
 use residual_render::passes::RenderOptions;
 use residual_render::tracer::{DebugView, TracerNode};
@@ -29,7 +29,7 @@ fn render(Subject { plan, bvh }: &Subject, buffers: Buffers<'_>, look: &Look) ->
         layers: plan.structure.layers,
         buffers,
         traversal: bvh,
-        options: options.tracer(),
+        options: options.tracer(SampleSet::First),
         reads: &reads,
     };
     let film = recording.film(look.samples);

@@ -5,7 +5,7 @@ use std::path::Path;
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, LaneCount};
 use residual_device_wgpu::{Dialect, Mapping, WgpuRenderer};
-use residual_render::film::{Film, TILE_SIZE};
+use residual_render::film::{Film, SampleSet, TILE_SIZE};
 use residual_render::passes::{MAX_PASS, Pass, RenderOptions};
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
@@ -73,7 +73,11 @@ impl Subject {
             while first < end {
                 let count = MAX_PASS.min(end - first);
                 renderer
-                    .pass(&mut film, Pass { first, count }, &options.tracer())
+                    .pass(
+                        film.tiles_mut(),
+                        Pass { first, count },
+                        &options.tracer(SampleSet::First),
+                    )
                     .unwrap_or_else(|error| panic!("{}: {error}", self.plan.name));
                 first += count;
             }

@@ -1,0 +1,297 @@
+//! The film: per-pixel sums and variances, in `f64`, so that neither saturates nor cancels (hard cases S-01, S-02).
+//!
+//! Pixels are kept tile by tile, so that a device's threads each own the tiles they render and share nothing. Beside
+//! radiance a film has the [`Layers`] that it was made for; what is kept of each is said by its
+//! [`Reduction`].
+
+mod replicates;
+mod tile;
+
+pub use replicates::SampleSet;
+pub use tile::{FilmTile, TileRect};
+
+use residual_accuracy::{ErrorEstimate, Replicate, Sampled};
+
+use crate::layer::{Layer, Layers, Reduction, Statistic};
+
+/// Pixels along the side of a tile. The paths under way in one, with all they carry, fit a second-level cache.
+pub const TILE_SIZE: u32 = 64;
+
+/// An image being accumulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    tiles: Vec<FilmTile>,
+    tile_size: u32,
+    layers: Layers,
+    second: Option<Box<SecondSet>>,
+}
+
+/// The second samples of some of a film's pixels.
+#[derive(Clone, Debug, PartialEq)]
+struct SecondSet {
+    set: SampleSet,
+    /// Seed of its random numbers.
+    seed: u32,
+    film: Film,
+}
+
+impl Film {
+    /// A black film, cut into square tiles of `tile_size` pixels (less at the right and bottom edges).
+    pub fn new(width: u32, height: u32, tile_size: u32, layers: Layers) -> Self {
+        let starts = |length: u32| (0..length).step_by(tile_size as usize);
+        let tile = |x: u32, y: u32| {
+            let rect = TileRect {
+                x,
+                y,
+                width: tile_size.min(width - x),
+                height: tile_size.min(height - y),
+            };
+            FilmTile::new(rect, layers)
+        };
+        let tiles = starts(height)
+            .flat_map(|y| starts(width).map(move |x| tile(x, y)))
+            .collect();
+        Self {
+            width,
+            height,
+            tiles,
+            tile_size,
+            layers,
+            second: None,
+        }
+    }
+
+    /// The same film with a second set of samples of some pixels, for a render with this seed: without it, the stated error
+    /// is that of independent samples. Too small an image has none.
+    #[must_use]
+    pub fn with_second_set(mut self, seed: u32) -> Self {
+        self.second = SampleSet::second(self.width, self.height).map(|set| {
+            let SampleSet::Second { block } = set else {
+                unreachable!("the second set is one")
+            };
+            // What is left at the right and bottom edges is in no block. Small tiles keep many threads busy.
+            let (width, height) = (self.width / block, self.height / block);
+            let film = Film::new(width, height, self.tile_size.div_ceil(4), self.layers);
+            let seed = set.seed(seed);
+            Box::new(SecondSet { set, seed, film })
+        });
+        self
+    }
+
+    /// Pixels a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// What it keeps beside radiance.
+    pub fn layers(&self) -> Layers {
+        self.layers
+    }
+
+    /// The tiles, to be rendered into.
+    pub fn tiles_mut(&mut self) -> &mut [FilmTile] {
+        &mut self.tiles
+    }
+
+    /// The tiles of the image and those of the second set of samples, to be rendered into as often as one another.
+    pub fn sets_mut(&mut self) -> (&mut [FilmTile], Vec<(SampleSet, &mut FilmTile)>) {
+        let second = self.second.iter_mut().flat_map(|second| {
+            let set = second.set;
+            second.film.tiles.iter_mut().map(move |tile| (set, tile))
+        });
+        (&mut self.tiles, second.collect())
+    }
+
+    /// Samples a pixel so far; the fewest of any tile.
+    pub fn samples(&self) -> u64 {
+        self.tiles
+            .iter()
+            .map(|tile| tile.samples)
+            .min()
+            .unwrap_or(0)
+    }
+
+    /// Samples that were NaN, infinite or negative. They count as black; a healthy render has none.
+    pub fn invalid_samples(&self) -> u64 {
+        self.tiles.iter().map(|tile| tile.invalid).sum()
+    }
+
+    /// The tile of each pixel and the pixel's index in it, row by row from the top, whatever the tiling.
+    fn places(&self) -> impl Iterator<Item = (&FilmTile, usize)> {
+        let per_row = self.width.div_ceil(self.tile_size);
+        (0..self.height).flat_map(move |y| {
+            (0..self.width).map(move |x| {
+                let tile =
+                    &self.tiles[(y / self.tile_size * per_row + x / self.tile_size) as usize];
+                let rect = tile.rect();
+                let index = (y - rect.y) * rect.width + (x - rect.x);
+                (tile, index as usize)
+            })
+        })
+    }
+
+    /// The samples of each pixel.
+    fn sampled(&self) -> impl Iterator<Item = Sampled<'_>> {
+        self.places().map(|(tile, index)| Sampled {
+            moments: &tile.pixels[index],
+            samples: tile.samples,
+        })
+    }
+
+    /// One channel of a layer, row by row from the top; `None` where the film does not have the layer, or the layer not
+    /// so many channels.
+    pub fn channel(&self, layer: Layer, channel: usize) -> Option<Vec<f32>> {
+        if !self.layers.has(layer) || channel >= layer.channels().len() {
+            return None;
+        }
+        let stride = self.layers.stride() - Layers::RADIANCE;
+        let kept = |(tile, index): (&FilmTile, usize)| {
+            let offset = self.layers.offset(layer) - Layers::RADIANCE + channel;
+            tile.channels[index * stride + offset]
+        };
+        let values = match layer.reduction() {
+            Reduction::Mean => self
+                .places()
+                .map(|place| (kept(place) / (place.0.samples.max(1) as f64)) as f32)
+                .collect(),
+            Reduction::First => self.places().map(|place| kept(place) as f32).collect(),
+            Reduction::Statistic(statistic) => self.statistic(statistic, channel),
+        };
+        Some(values)
+    }
+
+    /// What is known of the samples of each pixel.
+    fn statistic(&self, statistic: Statistic, channel: usize) -> Vec<f32> {
+        // Of these points' error, the samples' variance says too much.
+        let effect = match statistic {
+            Statistic::StandardError => self.error().map_or(1.0, |error| error.design_effect),
+            Statistic::Variance | Statistic::Count => 1.0,
+        };
+        let value = |sampled: Sampled<'_>| {
+            let samples = sampled.samples as f64;
+            let variance = || sampled.moments.channel(channel, sampled.samples).variance;
+            let value = match statistic {
+                Statistic::Count => samples,
+                Statistic::Variance => variance(),
+                Statistic::StandardError => (variance() / samples.max(1.0) * effect).sqrt(),
+            };
+            value as f32
+        };
+        self.sampled().map(value).collect()
+    }
+
+    /// The image: mean linear red, green, blue, row by row from the top.
+    pub fn image(&self) -> Vec<[f32; 3]> {
+        self.sampled().map(|s| mean(&s).map(|c| c as f32)).collect()
+    }
+
+    /// Mean of the whole image.
+    pub fn mean(&self) -> [f64; 3] {
+        let count = f64::from(self.width) * f64::from(self.height);
+        let sum = self.sampled().fold([0.0; 3], |sum, sampled| {
+            let mean = mean(&sampled);
+            [0, 1, 2].map(|k| sum[k] + mean[k])
+        });
+        sum.map(|c| c / count)
+    }
+
+    /// The estimated error; `None` below four samples a pixel.
+    pub fn error(&self) -> Option<ErrorEstimate> {
+        let pixels: Vec<_> = self.sampled().collect();
+        let replicates = self.second.as_deref().map(|second| {
+            let SecondSet { set, seed, film } = second;
+            let places = (0..film.height).flat_map(|y| (0..film.width).map(move |x| [x, y]));
+            let replicates = places.zip(film.sampled()).map(|(place, sampled)| {
+                let [x, y] = set.pixel(*seed, place);
+                let pixel = y as usize * self.width as usize + x as usize;
+                Replicate { pixel, sampled }
+            });
+            replicates.collect::<Vec<_>>()
+        });
+        ErrorEstimate::of(self.width as usize, &pixels, replicates.as_deref())
+    }
+}
+
+/// Mean red, green and blue.
+fn mean(sampled: &Sampled<'_>) -> [f64; 3] {
+    [0, 1, 2].map(|k| sampled.moments.channel(k, sampled.samples).mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiling_does_not_show() {
+        let sample = |x: u32, y: u32, s: u32| ((x * 7 + y * 13 + s * 29) % 31) as f32 * 0.37;
+        let render = |tile_size: u32| {
+            let mut film = Film::new(37, 21, tile_size, Layers::NONE);
+            for tile in film.tiles_mut() {
+                let r = tile.rect();
+                for s in 0..5 {
+                    let pixel = |i: u32| [sample(r.x + i % r.width, r.y + i / r.width, s); 3];
+                    tile.add(&(0..r.area() as u32).flat_map(pixel).collect::<Vec<_>>());
+                }
+            }
+            film
+        };
+        let (a, b) = (render(8), render(64));
+        assert_eq!(a.image(), b.image());
+        assert_eq!((a.mean(), a.error(), a.samples()), (b.mean(), b.error(), 5));
+    }
+
+    #[test]
+    fn saturates_not_and_cancels_not() {
+        // S-01 and S-02: mean 1000 ± 0.5, and more samples than f32 can count.
+        let mut film = Film::new(1, 1, 1, Layers::NONE);
+        let samples = 1 << 16;
+        for _ in 0..512 {
+            let tile: Vec<f32> = (0..samples)
+                .flat_map(|s| [1000.0 + if s / 2 % 2 == 0 { 0.5 } else { -0.5 }; 3])
+                .collect();
+            film.tiles_mut()[0].add(&tile);
+        }
+        let n = 512.0 * f64::from(samples);
+        assert_eq!(film.samples(), n as u64);
+        assert!((film.mean()[0] - 1000.0).abs() < 1e-6);
+        let expected = 0.25 / n / (1000.0 * 1000.0 * 1.01);
+        assert!((film.error().unwrap().relmse.value / expected - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn layers_are_means_first_samples_and_counts() {
+        let layers = Layers::NONE
+            .with(Layer::Normal)
+            .with(Layer::Depth)
+            .with(Layer::SampleCount);
+        assert_eq!(layers.stride(), 7);
+        let mut film = Film::new(2, 1, 8, layers);
+        let pixel = |normal: f32, depth| [1.0, 1.0, 1.0, normal, 0.0, -normal, depth];
+        let first = [pixel(0.0, 5.0), pixel(1.0, 7.0)].concat();
+        let second = [pixel(1.0, 9.0), pixel(0.5, 11.0)].concat();
+        film.tiles_mut()[0].add(&[first, second].concat());
+        let channel = |layer, channel| film.channel(layer, channel).unwrap();
+        assert_eq!(channel(Layer::Normal, 0), [0.5, 0.75]);
+        assert_eq!(channel(Layer::Normal, 2), [-0.5, -0.75]);
+        assert_eq!(channel(Layer::Depth, 0), [5.0, 7.0]);
+        assert_eq!(channel(Layer::SampleCount, 0), [2.0, 2.0]);
+        assert_eq!(film.channel(Layer::Normal, 3), None);
+        assert_eq!(film.channel(Layer::Albedo, 0), None);
+        assert_eq!(film.image(), [[1.0; 3]; 2]);
+    }
+
+    #[test]
+    fn invalid_samples_are_counted_and_dropped() {
+        let mut film = Film::new(1, 1, 1, Layers::NONE);
+        film.tiles_mut()[0].add(&[f32::NAN, 0.0, 0.0, 2.0, 2.0, 2.0, 1.0, f32::INFINITY, 0.0]);
+        assert_eq!(film.invalid_samples(), 2);
+        assert!((film.image()[0][0] - 2.0 / 3.0).abs() < 1e-7);
+    }
+}
