@@ -1,7 +1,7 @@
 //! How true the error is that renders state: many short renders of different seeds, each beside the mean of all others.
 
 use anyhow::{Context, Result};
-use residual_accuracy::{ErrorEstimate, Estimate, Interval, LUMINANCE, relative_mse};
+use residual_accuracy::{ErrorEstimate, Estimate, Interval, luminance, relative_mse};
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
 use residual_frontend::hierarchy_quality;
 use residual_render::film::{Film, TILE_SIZE};
@@ -48,15 +48,7 @@ impl Quantity {
 }
 
 fn grey(image: &[[f32; 3]]) -> Vec<[f32; 3]> {
-    let luminance = |pixel: &[f32; 3]| {
-        let sum: f64 = pixel
-            .iter()
-            .zip(LUMINANCE)
-            .map(|(&c, w)| f64::from(c) * w)
-            .sum();
-        [sum as f32; 3]
-    };
-    image.iter().map(luminance).collect()
+    image.iter().map(|&pixel| [luminance(pixel) as f32; 3]).collect()
 }
 
 /// How the statements compare with the truth, after so many samples.

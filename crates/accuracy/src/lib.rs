@@ -1,17 +1,22 @@
 //! How wrong an image is, and how certain that is.
 //!
-//! - Of one image: [`ErrorEstimate`], from running sums of its samples ([`PixelMoments`]), whoever made them.
-//! - Of two: [`flip()`], [`relative_mse()`].
+//! - Of one image: [`ErrorEstimate`], from running sums of its samples ([`PixelMoments`]), whoever made them; [`Convergence`] says how
+//!   the error falls, and what less of it costs.
+//! - Of two: all metrics together in [`comparison`]; [`flip()`] and [`relative_mse()`] alone.
 //! - Of repeated measurements: [`Estimate`] of a median, [`Jackknifed`] of what is made from several parts.
 //!
 //! Images are linear red, green and blue, row by row.
 
+pub mod color_map;
+pub mod comparison;
 mod convergence;
 mod error_estimate;
 mod estimate;
-mod flip;
+pub mod flip;
 mod jackknife;
+mod luminance;
 mod moments;
+mod normal;
 mod plausible;
 mod relative_mse;
 
@@ -20,5 +25,7 @@ pub use error_estimate::{Distrust, ErrorEstimate, FEWEST_SAMPLES, Interval, Repl
 pub use estimate::Estimate;
 pub use flip::flip;
 pub use jackknife::Jackknifed;
-pub use moments::{CHANNELS, LUMINANCE, MeanVariance, PixelMoments, SampleIndex, Y};
+pub use luminance::luminance;
+pub use moments::{CHANNELS, MeanVariance, PixelMoments, SampleIndex, Y};
+pub use normal::{normal_cdf, two_sided_tail};
 pub use relative_mse::relative_mse;

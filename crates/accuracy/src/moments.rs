@@ -1,7 +1,6 @@
 //! Running sums of the samples of a pixel: what an error estimate is made from.
 
-/// Weights of red, green and blue in luminance (ITU-R BT.709).
-pub const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+use crate::luminance::luminance;
 
 /// Red, green, blue and luminance.
 pub const CHANNELS: usize = 4;
@@ -98,8 +97,7 @@ impl PixelMoments {
     /// Adds a sample: linear red, green and blue.
     #[inline(always)]
     pub fn add(&mut self, rgb: [f64; 3], at: SampleIndex) {
-        let luminance = rgb[0] * LUMINANCE[0] + rgb[1] * LUMINANCE[1] + rgb[2] * LUMINANCE[2];
-        self.halves[at.half].add([rgb[0], rgb[1], rgb[2], luminance], at.step);
+        self.halves[at.half].add([rgb[0], rgb[1], rgb[2], luminance(rgb)], at.step);
     }
 
     /// Mean and variance of a channel of all `count` samples (Chan, Golub and LeVeque 1979).
@@ -150,7 +148,7 @@ mod tests {
             assert!((ours(0).variance - variance).abs() < 1e-12);
             assert!((ours(1).variance - 4.0 * variance).abs() < 1e-11);
             assert!(ours(2).variance < 1e-20);
-            let y = LUMINANCE[0] + 2.0 * LUMINANCE[1];
+            let y = luminance([1.0, 2.0, 0.0]);
             assert!((ours(Y).variance - y * y * variance).abs() < 1e-11);
         };
         let half =

@@ -3,6 +3,8 @@
 
 use std::f64::consts::PI;
 
+use super::map::FlipMap;
+
 /// Pixels a degree: a monitor of 3840 pixels and 0.7 m, seen from 0.7 m.
 const PIXELS_PER_DEGREE: f64 = 67.020_643;
 
@@ -28,14 +30,22 @@ const TO_XYZ: [Color; 3] = [
 ];
 
 /// Mean ꟻLIP of a picture against a reference, both linear, row by row, shown on a screen that clips at 1: 0 where nothing
-/// differs, 1 between black and white.
+/// differs, 1 between green and blue.
 ///
 /// # Panics
 /// If the images are not `width` wide and equally high.
 pub fn flip(reference: &[[f32; 3]], test: &[[f32; 3]], width: usize) -> f64 {
+    flip_map(reference, test, width).mean()
+}
+
+/// ꟻLIP of each pixel, of images as for [`flip()`].
+///
+/// # Panics
+/// If the images are not `width` wide and equally high.
+pub fn flip_map(reference: &[[f32; 3]], test: &[[f32; 3]], width: usize) -> FlipMap {
     assert!(reference.len() == test.len() && reference.len().is_multiple_of(width));
     if reference.is_empty() {
-        return 0.0;
+        return FlipMap::new(Vec::new());
     }
     let (a, b) = (Seen::new(reference, width), Seen::new(test, width));
     let most = hyab(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0])).powf(COLOR_POWER);
@@ -47,7 +57,7 @@ pub fn flip(reference: &[[f32; 3]], test: &[[f32; 3]], width: usize) -> f64 {
         let feature = (edges.max(points) / 2_f64.sqrt()).powf(0.5);
         color.powf(1.0 - feature.min(1.0))
     };
-    (0..reference.len()).map(difference).sum::<f64>() / reference.len() as f64
+    FlipMap::new((0..reference.len()).map(difference).collect())
 }
 
 const COLOR_POWER: f64 = 0.7;
