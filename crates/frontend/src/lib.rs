@@ -1,9 +1,12 @@
 //! What every program that renders shares, be it the command line or the renderer of a single scene: [`options`], a
-//! [`session`] with progress, interruption and images on the way, [statistics](stats), the [precision] reached, and image files ([`output`]).
+//! [`session`] with progress, interruption and images on the way, [statistics](stats), the [precision] reached, and image files
+//! ([`output`], [`input`], and [`pictures`] of numbers).
 
 mod clock;
+pub mod input;
 pub mod options;
 pub mod output;
+pub mod pictures;
 pub mod precision;
 mod rendered;
 pub mod session;

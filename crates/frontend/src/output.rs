@@ -22,15 +22,31 @@ pub struct Metadata {
     pub error: Option<ErrorEstimate>,
 }
 
+/// Formats that are written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Format {
+    Png,
+    Exr,
+}
+
+impl Format {
+    /// By the extension of a file's name, in either case.
+    pub(crate) fn of(path: &Path) -> Result<Self> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        match extension.to_ascii_lowercase().as_str() {
+            "png" => Ok(Self::Png),
+            "exr" => Ok(Self::Exr),
+            _ => bail!("{}: images are written as .png or .exr", path.display()),
+        }
+    }
+}
+
 /// Refuses file names that [`write()`] would refuse, before any work is done.
 ///
 /// # Errors
 /// If the format is none of ours, or the directory does not exist or cannot be written to.
 pub fn check(path: &Path) -> Result<()> {
-    match extension(path).as_str() {
-        "png" | "exr" => {}
-        _ => bail!("{}: images are written as .png or .exr", path.display()),
-    }
+    Format::of(path)?;
     check_place(path)
 }
 
@@ -39,7 +55,11 @@ pub fn check(path: &Path) -> Result<()> {
 /// # Errors
 /// If there are layers, and none of the files is an EXR.
 pub fn check_layers(paths: &[PathBuf], layers: Layers) -> Result<()> {
-    if layers != Layers::NONE && paths.iter().all(|path| extension(path) != "exr") {
+    if layers != Layers::NONE
+        && !paths
+            .iter()
+            .any(|path| matches!(Format::of(path), Ok(Format::Exr)))
+    {
         let names: Vec<_> = layers.iter().map(|layer| layer.name()).collect();
         bail!(
             "only an EXR holds layers ({}); add one with -o image.exr",
@@ -79,13 +99,6 @@ pub fn check_place(path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn extension(path: &Path) -> String {
-    path.extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_lowercase()
-}
-
 fn directory(path: &Path) -> &Path {
     path.parent()
         .filter(|parent| !parent.as_os_str().is_empty())
@@ -97,9 +110,9 @@ fn directory(path: &Path) -> &Path {
 /// # Errors
 /// If the file cannot be written.
 pub fn write(path: &Path, film: &Film, metadata: &Metadata) -> Result<()> {
-    let bytes = match extension(path).as_str() {
-        "png" => png(film)?,
-        _ => open_exr(film, metadata)?,
+    let bytes = match Format::of(path)? {
+        Format::Png => png(film)?,
+        Format::Exr => open_exr(film, metadata)?,
     };
     write_atomically(path, &bytes)
 }
@@ -141,13 +154,18 @@ fn write_with_mode(path: &Path, bytes: &[u8], mode: u32) -> Result<()> {
 }
 
 fn png(film: &Film) -> Result<Vec<u8>> {
-    let pixels = film
+    let codes = film
         .image()
         .into_iter()
         .flat_map(|rgb| rgb.map(srgb_code))
         .collect();
-    let image = image::RgbImage::from_raw(film.width(), film.height(), pixels)
-        .expect("the film has as many pixels as its size says");
+    encode_png([film.width() as usize, film.height() as usize], codes)
+}
+
+/// Codes for red, green and blue, row by row, as a PNG of this width and height.
+pub(crate) fn encode_png([width, height]: [usize; 2], codes: Vec<u8>) -> Result<Vec<u8>> {
+    let image = image::RgbImage::from_raw(width as u32, height as u32, codes)
+        .expect("there are as many pixels as the size says");
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, image::ImageFormat::Png)?;
     Ok(bytes.into_inner())

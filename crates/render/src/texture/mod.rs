@@ -15,7 +15,7 @@ pub use image::{
     MirroredRepeat, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
 };
 pub use params::{ColorParam, ImageParam, TransformParam};
-pub use srgb::{srgb_code, srgb_table};
+pub use srgb::{srgb_code, srgb_decoded, srgb_table};
 
 use crate::domain::{Buffer, Domain};
 use crate::math::vec3::lit3;

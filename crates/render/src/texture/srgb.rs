@@ -4,15 +4,16 @@ use crate::domain::Domain;
 
 /// The linear values of the 256 codes, correctly rounded.
 pub fn srgb_table() -> [f32; 256] {
-    std::array::from_fn(|code| {
-        let c = code as f64 / 255.0;
-        let linear = if c <= 0.04045 {
-            c / 12.92
-        } else {
-            ((c + 0.055) / 1.055).powf(2.4)
-        };
-        linear as f32
-    })
+    std::array::from_fn(|code| srgb_decoded(code as f64 / 255.0) as f32)
+}
+
+/// The linear value of an encoded one, both from 0 to 1.
+pub fn srgb_decoded(encoded: f64) -> f64 {
+    if encoded <= 0.04045 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
 }
 
 /// The 8-bit code of a linear value, for pictures; values outside [0, 1] are clamped, NaN is 0.
