@@ -116,7 +116,7 @@ pub enum PairError {
     Empty,
     /// Pixels are infinite or no numbers.
     #[error(
-        "the {role} has {count} pixels that are not finite, the first at {},{}; a comparison leaves no pixel out",
+        "the {role} has pixels that are not finite: {count}, the first at {},{}; a comparison leaves none out",
         first[0], first[1]
     )]
     NotFinite {
@@ -129,7 +129,7 @@ pub enum PairError {
     },
     /// Standard errors are infinite, negative or no numbers.
     #[error(
-        "the {role} has {count} pixels whose standard error is no finite number from 0 on, the first at {},{}",
+        "the {role} has pixels whose standard error is no finite number from 0 on: {count}, the first at {},{}",
         first[0], first[1]
     )]
     StandardErrors {
@@ -170,9 +170,11 @@ mod tests {
         bad[4][1] = f32::NAN;
         bad[5] = [f32::INFINITY; 3];
         let text = message(image(&good), image(&bad));
-        assert!(text.contains("test has 2 pixels") && text.contains("1,1"));
+        assert!(
+            text.contains("the test has pixels that are not finite: 2") && text.contains("1,1")
+        );
         let text = message(image(&bad), image(&good));
-        assert!(text.contains("reference has 2 pixels"), "{text}");
+        assert!(text.contains("the reference has pixels"), "{text}");
         for error in [-1.0, f32::NAN, f32::INFINITY] {
             let mut errors = good;
             errors[2][2] = error;
