@@ -75,6 +75,7 @@ pub const TABLE: &[Row] = &[
     row(
         "xtask",
         &[
+            "residual-accuracy",
             "residual-device-cpu",
             "residual-device-wgpu",
             "residual-driver",

@@ -10,6 +10,8 @@ use residual_frontend::options::Size;
 use residual_render::layer::{Layer, Layers};
 use residual_render::tracer::{DebugView, TracerNode};
 
+use crate::compare::args::CompareArgs;
+
 /// Generates a renderer for a scene, and renders it.
 #[derive(Parser)]
 #[command(
@@ -36,6 +38,8 @@ pub(crate) enum Command {
     /// Compiled renderers that are kept
     #[command(subcommand)]
     Cache(CacheCommand),
+    /// Compare two images
+    Compare(CompareArgs),
     /// List the GPUs and what their arithmetic is like
     Adapters,
     /// Measure speed

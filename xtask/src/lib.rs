@@ -5,6 +5,7 @@
 mod args;
 mod build;
 mod cache;
+mod compare;
 mod delegate;
 mod emit;
 mod inspect;
@@ -20,7 +21,7 @@ use clap::Parser;
 
 use crate::args::{Cli, Command, DeviceArg};
 
-/// The command line: status 0, 1 for a failed job, 2 for bad usage.
+/// The command line: status 0, 1 for a failed job, 2 for bad usage and for images that cannot be compared.
 pub fn main() -> ExitCode {
     // Bad usage ends in clap, with status 2.
     run(Cli::parse().command).unwrap_or_else(|error| {
@@ -42,6 +43,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Emit(args) => emit::run(&args)?,
         Command::Build(args) => build::run(&args)?,
         Command::Cache(command) => cache::run(command)?,
+        Command::Compare(args) => return Ok(compare::run(&args)),
         #[cfg(feature = "wgpu")]
         Command::Adapters => render_wgpu::adapters()?,
         #[cfg(not(feature = "wgpu"))]

@@ -4,6 +4,7 @@
 mod bench;
 mod build;
 mod cache;
+mod compare;
 mod emit;
 mod gpu;
 mod inspect;

@@ -29,6 +29,11 @@ fn bad_usage_ends_in_status_2() {
         &["render", "triangle.obj", "--tier", "fastest"],
         &["inspect"],
         &["emit", "triangle.obj"],
+        &["compare"],
+        &["compare", "a.exr"],
+        &["compare", "a.exr", "b.exr", "--max-relmse", "-1"],
+        &["compare", "a.exr", "b.exr", "--max-flip", "nan"],
+        &["compare", "a.exr", "b.exr", "--crop", "0,0,0,4"],
     ];
     for args in cases {
         let output = run(&folder, args);
