@@ -48,7 +48,10 @@ impl Quantity {
 }
 
 fn grey(image: &[[f32; 3]]) -> Vec<[f32; 3]> {
-    image.iter().map(|&pixel| [luminance(pixel) as f32; 3]).collect()
+    image
+        .iter()
+        .map(|&pixel| [luminance(pixel) as f32; 3])
+        .collect()
 }
 
 /// How the statements compare with the truth, after so many samples.

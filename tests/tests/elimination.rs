@@ -112,6 +112,7 @@ const COMMON: &[&str] = &[
     "render/src/camera.rs",
     "render/src/domain/",
     // How many numbers a sample has.
+    "render/src/film/replicates.rs",
     "render/src/layer.rs",
     "render/src/light/mod.rs",
     "render/src/light/pick.rs",

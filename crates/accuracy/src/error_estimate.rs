@@ -233,8 +233,10 @@ impl Parts {
             }
         }
         let count = pixels.len() as f64;
-        sums.jackknifed = (2.0 * sums.plain - of_halves) / count;
         sums.plain /= count;
+        // A larger correction is no longer one.
+        let jackknifed = 2.0 * sums.plain - of_halves / count;
+        sums.jackknifed = jackknifed.clamp(0.5 * sums.plain, 2.0 * sums.plain);
         sums.products /= count * count;
         sums.squares /= count * count;
 

@@ -127,6 +127,11 @@ impl Layers {
         Layer::ALL.into_iter().filter(move |&layer| self.has(layer))
     }
 
+    /// Those of them that samples hold numbers of.
+    pub fn of_samples(self) -> impl Iterator<Item = Layer> {
+        self.iter().filter(|layer| layer.width() > 0)
+    }
+
     /// How many numbers a sample has.
     #[inline(always)]
     pub const fn stride(self) -> usize {

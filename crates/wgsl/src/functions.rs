@@ -5,7 +5,7 @@
 use residual_render::alpha::AlphaTest as _;
 use residual_render::domain::tape::{Function, Outputs, Record, Tape};
 use residual_render::domain::{Buffers, Domain};
-use residual_render::layer::{Layer, Layers};
+use residual_render::layer::Layers;
 use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
 use residual_render::program::{AlphaTestNode, BoxedMaterial, Interpreted, Program, Structure};
@@ -257,7 +257,7 @@ fn layers<'t>(
     set: Layers,
 ) -> Outputs<'t> {
     let channels = features.channels(set);
-    for layer in set.iter().filter(|&layer| layer != Layer::SampleCount) {
+    for layer in set.of_samples() {
         let first = set.offset(layer) - Layers::RADIANCE;
         outputs = match channels[first..first + layer.channels().len()] {
             [x, y, z] => outputs.vector(layer.name(), vec3(x, y, z)),

@@ -1,6 +1,6 @@
 //! The texts of kernels: what is recorded of a scene, and what schedules it.
 
-use residual_render::layer::{Layer, Layers};
+use residual_render::layer::Layers;
 use residual_render::program::Structure;
 
 use crate::arithmetic::Arithmetic;
@@ -311,7 +311,7 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
     /// Layers keep what is seen first.
     fn keep_layers(&self, step: &Recorded, indent: &str) -> String {
         let mut lines = String::new();
-        for layer in self.layers.iter().filter(|&l| l != Layer::SampleCount) {
+        for layer in self.layers.of_samples() {
             let Some(value) = step.output("step", layer.name()) else {
                 continue;
             };

@@ -12,7 +12,7 @@ fn statistics_have_what_the_design_promises() {
     let folder = workplace();
     let output = good(render(
         &folder,
-        &["triangle.obj", "--quiet", "--stats", "json", "--spp", "3"],
+        &["triangle.obj", "--quiet", "--stats", "json", "--spp", "4"],
     ));
     let stats = statistics(&output);
     for number in [
@@ -51,7 +51,7 @@ fn statistics_have_what_the_design_promises() {
     );
     assert_eq!(
         (&stats["width"], &stats["height"], &stats["spp"]),
-        (&json!(16), &json!(12), &json!(3))
+        (&json!(16), &json!(12), &json!(4))
     );
     assert_eq!(
         (&stats["rays"]["camera"], &stats["invalid_samples"]),

@@ -12,7 +12,7 @@ use residual_device_cpu::{AnyBvh, Traversal};
 use residual_render::domain::tape::{Function, Id, Node, ParameterKind, Statement};
 use residual_render::domain::{Buffer, Buffers, Scalar, Uint};
 use residual_render::film::{Film, TILE_SIZE};
-use residual_render::layer::{Layer, Layers};
+use residual_render::layer::Layers;
 use residual_render::tracer::TracerOptions;
 use residual_wgsl::{Recorded, SceneFunctions};
 
@@ -306,7 +306,7 @@ impl Recording<'_> {
                 add(&mut numbers, seen);
             }
             if path.depth == 1 {
-                for layer in self.layers.iter().filter(|&l| l != Layer::SampleCount) {
+                for layer in self.layers.of_samples() {
                     let value = step.words(layer.name()).expect("a layer");
                     for (number, &bits) in
                         numbers[self.layers.offset(layer)..].iter_mut().zip(value)

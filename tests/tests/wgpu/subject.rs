@@ -148,10 +148,10 @@ pub(crate) fn for_each_shared(
     assert!(checked >= at_least, "{checked} scenes in {folder}");
 }
 
-/// How two films differ; `None` if they are the same in all that they keep.
+/// How the samples of two films differ; `None` if they are the same in all that is kept of them.
 #[must_use]
 pub(crate) fn difference(a: &Film, b: &Film) -> Option<String> {
-    if a == b {
+    if a.tiles() == b.tiles() {
         return None;
     }
     let layer = a.layers().iter().find(|layer| {

@@ -95,6 +95,11 @@ impl Film {
         self.layers
     }
 
+    /// The tiles.
+    pub fn tiles(&self) -> &[FilmTile] {
+        &self.tiles
+    }
+
     /// The tiles, to be rendered into.
     pub fn tiles_mut(&mut self) -> &mut [FilmTile] {
         &mut self.tiles
