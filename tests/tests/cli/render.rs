@@ -55,7 +55,7 @@ fn statistics_have_what_the_design_promises() {
     );
     assert_eq!(
         (&stats["rays"]["camera"], &stats["invalid_samples"]),
-        (&json!(16 * 12 * 3), &json!(0))
+        (&json!((16 * 12 + 4 * 3) * 4), &json!(0))
     );
     let effects = stats["effects"].as_array().unwrap();
     assert!(
