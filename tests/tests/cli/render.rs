@@ -64,7 +64,7 @@ fn statistics_have_what_the_design_promises() {
     let seconds = |name: &str| stats["seconds"][name].as_f64().unwrap();
     assert!(seconds("load") + seconds("bvh") + seconds("render") <= seconds("total"));
     let rate = stats["msamples_per_s"].as_f64().unwrap() * 1e6 * seconds("render");
-    assert!((rate / 576.0 - 1.0).abs() < 1e-6, "{rate} samples");
+    assert!((rate / 768.0 - 1.0).abs() < 1e-6, "{rate} samples");
 
     let one = good(render(
         &folder,
