@@ -9,7 +9,7 @@ use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
 use render::surface::Attributes;
 use render::texture::{Bilinear, Image, LinearRgba8, Param, Product, Repeat, UvMap};
-use render::tracer::{PathTracer, Settings};
+use render::tracer::{PathTracer, PowerHeuristic, Settings};
 use render::triangle::program_in;
 use residual_device_cpu::generated::render;
 
@@ -30,7 +30,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x91ad6f871f4cb455;
+    pub const STRUCTURE: u64 = 0x7d9cd7507ee5c983;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -50,7 +50,7 @@ const TEXTURE_0: Image<Repeat, Repeat, Bilinear, LinearRgba8> = Image {
 
 impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
-    type Tracer = PathTracer<D, Sobol>;
+    type Tracer = PathTracer<D, Sobol, PowerHeuristic>;
     type Lights = (Point, ());
 
     #[inline(always)]
@@ -62,6 +62,7 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
         PathTracer {
             sampler: Sobol,
             settings,
+            mis: PowerHeuristic,
         }
     }
     // Point: 1

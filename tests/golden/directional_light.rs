@@ -6,7 +6,7 @@ use render::layer::Layers;
 use render::light::Directional;
 use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
-use render::tracer::{PathTracer, Settings};
+use render::tracer::{PathTracer, PowerHeuristic, Settings};
 use residual_device_cpu::generated::render;
 
 /// The scene's structure. What is not in it is not in the renderer.
@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xb59b91edaa55d073;
+    pub const STRUCTURE: u64 = 0x52bdeb71676ed4f1;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -34,7 +34,7 @@ impl Scene<'_> {
 
 impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
-    type Tracer = PathTracer<D, Sobol>;
+    type Tracer = PathTracer<D, Sobol, PowerHeuristic>;
     type Lights = (Directional, ());
 
     #[inline(always)]
@@ -46,6 +46,7 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
         PathTracer {
             sampler: Sobol,
             settings,
+            mis: PowerHeuristic,
         }
     }
     // Directional: 1

@@ -8,7 +8,7 @@ use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
 use render::surface::Attributes;
 use render::texture::Param;
-use render::tracer::{PathTracer, Settings};
+use render::tracer::{PathTracer, PowerHeuristic, Settings};
 use residual_device_cpu::generated::render;
 
 /// The scene's structure. What is not in it is not in the renderer.
@@ -28,7 +28,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x8caecd2048bfc68d;
+    pub const STRUCTURE: u64 = 0x2c040bd0d0a98b7b;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -36,7 +36,7 @@ impl Scene<'_> {
 
 impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
-    type Tracer = PathTracer<D, Sobol>;
+    type Tracer = PathTracer<D, Sobol, PowerHeuristic>;
     type Lights = (Area<Param>, ());
 
     #[inline(always)]
@@ -48,6 +48,7 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
         PathTracer {
             sampler: Sobol,
             settings,
+            mis: PowerHeuristic,
         }
     }
     // Area: 2

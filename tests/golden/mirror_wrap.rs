@@ -7,7 +7,7 @@ use render::light::Point;
 use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
 use render::texture::{Bilinear, Image, MirroredRepeat, SrgbRgba8, UvMap};
-use render::tracer::{PathTracer, Settings};
+use render::tracer::{PathTracer, PowerHeuristic, Settings};
 use residual_device_cpu::generated::render;
 
 /// The scene's structure. What is not in it is not in the renderer.
@@ -27,7 +27,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x0e0108e8ba06b5fc;
+    pub const STRUCTURE: u64 = 0x87630a5b3d4cf4de;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -47,7 +47,7 @@ const TEXTURE_0: Image<MirroredRepeat, MirroredRepeat, Bilinear, SrgbRgba8> = Im
 
 impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
-    type Tracer = PathTracer<D, Sobol>;
+    type Tracer = PathTracer<D, Sobol, PowerHeuristic>;
     type Lights = (Point, ());
 
     #[inline(always)]
@@ -59,6 +59,7 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
         PathTracer {
             sampler: Sobol,
             settings,
+            mis: PowerHeuristic,
         }
     }
     // Point: 1

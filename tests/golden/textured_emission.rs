@@ -8,7 +8,7 @@ use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
 use render::surface::Attributes;
 use render::texture::{Bilinear, Image, Param, Product, Repeat, SrgbRgba8, UvMap};
-use render::tracer::{PathTracer, Settings};
+use render::tracer::{PathTracer, PowerHeuristic, Settings};
 use residual_device_cpu::generated::render;
 
 /// The scene's structure. What is not in it is not in the renderer.
@@ -28,7 +28,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x201b900c98fe0ef7;
+    pub const STRUCTURE: u64 = 0x6b3c02fad21e1c55;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -48,7 +48,7 @@ const TEXTURE_0: Image<Repeat, Repeat, Bilinear, SrgbRgba8> = Image {
 
 impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
-    type Tracer = PathTracer<D, Sobol>;
+    type Tracer = PathTracer<D, Sobol, PowerHeuristic>;
     type Lights = (
         Area<Product<Param, Image<Repeat, Repeat, Bilinear, SrgbRgba8>>>,
         (),
@@ -63,6 +63,7 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
         PathTracer {
             sampler: Sobol,
             settings,
+            mis: PowerHeuristic,
         }
     }
     // Area: 2

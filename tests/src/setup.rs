@@ -129,11 +129,10 @@ impl<'a> Prepared<'a> {
         let options = RenderOptions {
             size: look.size,
             samples: Some(look.samples),
-            time: None,
-            error: None,
             max_depth: look.max_depth,
             seed: look.seed,
             reach: look.reach,
+            ..RenderOptions::default()
         };
         let go_on = |_: residual_render::passes::Progress<'_>| ControlFlow::Continue(());
         device.render(|| renderer, &self.view(), &options, go_on).0

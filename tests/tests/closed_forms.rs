@@ -92,7 +92,7 @@ fn scene(
         },
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
-        tracer: TracerNode::Path,
+        tracer: TracerNode::default(),
         layers: Layers::NONE,
     };
     (structure, data)

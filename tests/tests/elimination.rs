@@ -127,6 +127,7 @@ const COMMON: &[&str] = &[
     "render/src/texture/mod.rs",
     "render/src/texture/params.rs",
     "render/src/tracer/mod.rs",
+    "render/src/tracer/mis.rs",
     "render/src/tracer/path.rs",
     "render/src/tracer/settings.rs",
     "render/src/tracer/step.rs",
@@ -279,8 +280,8 @@ fn layers_and_other_tracers_are_there_if_asked_for() {
     };
     let all: Layers = Layer::ALL.into_iter().collect();
     let libraries = [
-        compile(TracerNode::Path, Layers::NONE),
-        compile(TracerNode::Path, all),
+        compile(TracerNode::default(), Layers::NONE),
+        compile(TracerNode::default(), all),
         compile(TracerNode::AmbientOcclusion, Layers::NONE),
         compile(TracerNode::Debug(DebugView::Normals), Layers::NONE),
     ];

@@ -245,7 +245,7 @@ fn check(tracer: TracerNode, layers: Layers, others: &[LaneCount]) {
 #[test]
 fn path_tracer_with_layers() {
     check(
-        TracerNode::Path,
+        TracerNode::default(),
         Layer::ALL.into_iter().collect(),
         &LaneCount::ALL,
     );

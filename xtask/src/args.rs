@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use residual_device_cpu::LaneCount;
 use residual_frontend::options::Size;
 use residual_render::layer::{Layer, Layers};
-use residual_render::tracer::{DebugView, TracerNode};
+use residual_render::tracer::{AnyMis, DebugView, TracerNode};
 
 use crate::compare::args::CompareArgs;
 
@@ -95,6 +95,12 @@ pub(crate) struct SceneArgs {
     /// Where random numbers come from
     #[arg(long, value_enum, default_value_t = SamplerArg::Sobol)]
     pub(crate) sampler: SamplerArg,
+    /// How often each light is picked
+    #[arg(long, value_enum, default_value_t = LightsArg::Mixed)]
+    pub(crate) lights: LightsArg,
+    /// How light is weighed that is found by sampling lights and by following the BSDF
+    #[arg(long, value_enum, default_value_t = MisArg::Power)]
+    pub(crate) mis: MisArg,
     /// What is computed along rays
     #[arg(long, value_enum, default_value_t = TracerArg::Path)]
     pub(crate) tracer: TracerArg,
@@ -228,6 +234,28 @@ pub(crate) enum SamplerArg {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LightsArg {
+    /// Half of the picks by power, half evenly by kind
+    Mixed,
+    /// By power
+    Power,
+    /// Each as often as any other
+    Uniform,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MisArg {
+    /// By the power heuristic
+    Power,
+    /// By the balance heuristic
+    Balance,
+    /// By sampling lights alone, where it can find them: for comparison
+    Lights,
+    /// By following the BSDF alone, where it can find them: for comparison
+    Bsdf,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TracerArg {
     /// Light along paths
     Path,
@@ -239,9 +267,14 @@ pub(crate) enum TracerArg {
 
 impl TracerArg {
     /// The tracer, with what a debug picture shows.
-    pub(crate) fn node(self, view: ViewArg) -> TracerNode {
+    pub(crate) fn node(self, view: ViewArg, mis: MisArg) -> TracerNode {
         match self {
-            Self::Path => TracerNode::Path,
+            Self::Path => TracerNode::Path(match mis {
+                MisArg::Power => AnyMis::PowerHeuristic,
+                MisArg::Balance => AnyMis::BalanceHeuristic,
+                MisArg::Lights => AnyMis::LightsOnly,
+                MisArg::Bsdf => AnyMis::BsdfOnly,
+            }),
             Self::Ao => TracerNode::AmbientOcclusion,
             Self::Debug => TracerNode::Debug(match view {
                 ViewArg::Normals => DebugView::Normals,

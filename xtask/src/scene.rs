@@ -8,9 +8,11 @@ use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{SceneDesc, WarningKind};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
-use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, View, plan};
+use residual_scenegen::plan::{
+    Binding, CameraChoice, CullingRule, LightPicks, Plan, PlanOptions, View, plan,
+};
 
-use crate::args::{CullingArg, SamplerArg, SceneArgs, SpecializeArg};
+use crate::args::{CullingArg, LightsArg, SamplerArg, SceneArgs, SpecializeArg};
 
 /// What statistics say about a planned scene.
 pub(crate) fn summary(plan: &Plan) -> SceneSummary {
@@ -62,11 +64,16 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             CullingArg::Gltf => CullingRule::Gltf,
             CullingArg::None => CullingRule::None,
         },
+        light_picks: match args.lights {
+            LightsArg::Mixed => LightPicks::Mixed,
+            LightsArg::Power => LightPicks::Power,
+            LightsArg::Uniform => LightPicks::Uniform,
+        },
         sampler: match args.sampler {
             SamplerArg::Sobol => AnySampler::Sobol,
             SamplerArg::Independent => AnySampler::Independent,
         },
-        tracer: args.tracer.node(args.view),
+        tracer: args.tracer.node(args.view, args.mis),
         layers: args.layers(),
         flat_normals: false,
     };

@@ -19,7 +19,7 @@ use residual_render::surface::{Attributes, Surface};
 use residual_render::texture::{
     Bilinear, Bound, ColorSource, Image, LinearRgba8, Param, Repeat, ScalarSource, SrgbRgba8,
 };
-use residual_render::tracer::{PathTracer, Settings};
+use residual_render::tracer::{PathTracer, PowerHeuristic, Settings};
 
 use super::kinds::{Inputs, Kind};
 
@@ -222,6 +222,7 @@ impl<D: Domain> Renderer<D> for Cases<'_> {
     }
     fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
         PathTracer {
+            mis: PowerHeuristic,
             sampler: Sobol,
             settings,
         }

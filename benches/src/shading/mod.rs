@@ -21,7 +21,7 @@ use residual_render::program::{CameraNode, LightNode, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
 use residual_render::tracer::{TracerNode, TracerOptions};
-use residual_scenegen::plan::{Binding, LightKindUse, MaterialUse, Plan};
+use residual_scenegen::plan::{Binding, LightKindUse, LightPicks, MaterialUse, Plan};
 use serde_json::{Value, json};
 
 use self::interfaces::{CasesRenderer, Known};
@@ -52,6 +52,7 @@ pub fn plan() -> Plan {
         }]
     };
     Plan {
+        light_picks: LightPicks::default(),
         name: "shading".to_owned(),
         binding: Binding::default(),
         structure: Structure {
@@ -59,7 +60,7 @@ pub fn plan() -> Plan {
             lights: vec![LightNode::Point],
             camera: CameraNode::Perspective,
             sampler: AnySampler::Sobol,
-            tracer: TracerNode::Path,
+            tracer: TracerNode::default(),
             layers: Layers::NONE,
         },
         data: stream::data(&params),

@@ -128,7 +128,7 @@ impl std::fmt::Display for Distrust {
 }
 
 /// Below this many pixels that carry the error in effect, it has heavy tails.
-const FEWEST_CARRIERS: f64 = 200.0;
+const FEWEST_CARRIERS: f64 = 400.0;
 /// Above this part of the estimate, the correction for noisy means is too large to trust what is left.
 const LARGEST_CORRECTION: f64 = 0.15;
 /// Above this error, pixels are so noisy that what the correction leaves is large, too.

@@ -27,6 +27,9 @@ pub struct RenderArgs {
     /// Most vertices of a path: 1 is emission seen directly, 2 adds direct light
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub max_depth: u32,
+    /// First vertex at which Russian roulette may end a path
+    #[arg(long, value_name = "N", default_value_t = RenderOptions::default().roulette_from, value_parser = clap::value_parser!(u32).range(1..))]
+    pub roulette: u32,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
@@ -55,6 +58,7 @@ impl RenderArgs {
             time: self.time,
             error: self.error,
             max_depth: self.max_depth,
+            roulette_from: self.roulette,
             seed: self.seed,
             reach: self.reach.unwrap_or(reach),
         }

@@ -21,6 +21,7 @@ fn what_there_was_before_is_written_and_the_failure_told() {
         time: None,
         error: None,
         max_depth: 8,
+        roulette: 5,
         seed: 0,
         reach: None,
         threads: 1,

@@ -13,8 +13,6 @@ use crate::tracer::TracerOptions;
 const PASS_TIME: Duration = Duration::from_millis(250);
 /// Most samples a pixel in one pass.
 pub const MAX_PASS: u32 = 16;
-/// The first vertex at which roulette may end a path.
-const ROULETTE_FROM: u32 = 5;
 
 /// What is to be rendered, and when to stop.
 #[derive(Clone, Debug)]
@@ -30,6 +28,8 @@ pub struct RenderOptions {
     pub error: Option<f64>,
     /// Most vertices a path may have; 1 is emission seen directly, 2 adds direct light.
     pub max_depth: u32,
+    /// First vertex at which Russian roulette may end a path.
+    pub roulette_from: u32,
     /// Seed of the random numbers.
     pub seed: u32,
     /// How far occluders count for ambient occlusion, and where the depth view turns black, in units of the scene.
@@ -45,6 +45,7 @@ impl Default for RenderOptions {
             time: None,
             error: None,
             max_depth: 8,
+            roulette_from: 5,
             seed: 0,
             reach: f32::MAX,
         }
@@ -58,7 +59,7 @@ impl RenderOptions {
             image: self.size,
             seed: set.seed(self.seed),
             max_depth: self.max_depth,
-            roulette_from: ROULETTE_FROM,
+            roulette_from: self.roulette_from,
             reach: self.reach,
         }
     }

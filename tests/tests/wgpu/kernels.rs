@@ -209,7 +209,7 @@ fn kernels_of_tiny_scenes() {
 #[test]
 fn kernels_of_every_tracer_and_layer() {
     let views = DebugView::ALL.into_iter().map(TracerNode::Debug);
-    let tracers = [TracerNode::Path, TracerNode::AmbientOcclusion];
+    let tracers = [TracerNode::default(), TracerNode::AmbientOcclusion];
     for tracer in tracers.into_iter().chain(views) {
         for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
             let options = PlanOptions {

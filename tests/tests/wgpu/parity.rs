@@ -131,7 +131,7 @@ fn tracers_and_layers() {
     let views = views
         .filter(|&view| view != DebugView::TraversalCost)
         .map(TracerNode::Debug);
-    let tracers = [TracerNode::Path, TracerNode::AmbientOcclusion];
+    let tracers = [TracerNode::default(), TracerNode::AmbientOcclusion];
     let size = [37, 29];
     for tracer in tracers.into_iter().chain(views) {
         for (scene, layers) in [

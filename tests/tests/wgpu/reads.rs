@@ -64,7 +64,7 @@ fn tiny_scenes_are_read_within_bounds() {
 fn tracers_and_layers_read_within_bounds() {
     let views = DebugView::ALL.into_iter();
     let views = views.filter(|&view| view != DebugView::TraversalCost);
-    let tracers = [TracerNode::Path, TracerNode::AmbientOcclusion];
+    let tracers = [TracerNode::default(), TracerNode::AmbientOcclusion];
     let size = [21, 15];
     for tracer in tracers.into_iter().chain(views.map(TracerNode::Debug)) {
         for scene in [fixtures::textures(), fixtures::room(), fixtures::lights()] {

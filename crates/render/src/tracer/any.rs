@@ -1,8 +1,8 @@
 //! A tracer chosen at run time.
 
 use super::{
-    AmbientOcclusion, Bounce, CostMap, Debug, DebugView, Path, PathTracer, Settings, Shadow,
-    Tracer, Vertex,
+    AmbientOcclusion, AnyMis, Bounce, CostMap, Debug, DebugView, Path, PathTracer, Settings,
+    Shadow, Tracer, Vertex,
 };
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -12,15 +12,20 @@ use crate::math::Color;
 use crate::sampler::Sampler;
 
 /// Which tracer a renderer has.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TracerNode {
     /// [`PathTracer`].
-    #[default]
-    Path,
+    Path(AnyMis),
     /// [`AmbientOcclusion`].
     AmbientOcclusion,
     /// [`struct@Debug`].
     Debug(DebugView),
+}
+
+impl Default for TracerNode {
+    fn default() -> Self {
+        Self::Path(AnyMis::default())
+    }
 }
 
 impl TracerNode {
@@ -28,7 +33,11 @@ impl TracerNode {
     #[inline(always)]
     pub fn tracer<D: Domain, S>(self, sampler: S, settings: Settings<D>) -> AnyTracer<D, S> {
         match self {
-            Self::Path => AnyTracer::Path(PathTracer { sampler, settings }),
+            Self::Path(mis) => AnyTracer::Path(PathTracer {
+                sampler,
+                settings,
+                mis,
+            }),
             Self::AmbientOcclusion => {
                 AnyTracer::AmbientOcclusion(AmbientOcclusion { sampler, settings })
             }
@@ -45,7 +54,7 @@ impl TracerNode {
 #[derive(Clone, Copy)]
 #[expect(missing_docs, reason = "each variant is the type of its name")]
 pub enum AnyTracer<D: Domain, S> {
-    Path(PathTracer<D, S>),
+    Path(PathTracer<D, S, AnyMis>),
     AmbientOcclusion(AmbientOcclusion<D, S>),
     Debug(Debug<D, S>),
 }

@@ -1,10 +1,10 @@
 //! The path tracer: unidirectional, with next-event estimation, multiple importance sampling and Russian roulette.
 
-use super::{Bounce, Path, Settings, Shadow, Tracer, Vertex, consistent};
+use super::{Bounce, Mis, Path, PowerHeuristic, Settings, Shadow, Tracer, Vertex, consistent};
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
 use crate::domain::Domain;
-use crate::light::{self, LightKinds, power_heuristic};
+use crate::light::{self, LightKinds};
 use crate::math::{Color, Vec3};
 use crate::sampler::Sampler;
 use crate::surface::PathRay;
@@ -19,22 +19,32 @@ const LOBE_AND_ROULETTE: u32 = 3;
 
 /// The path tracer.
 #[derive(Clone, Copy)]
-pub struct PathTracer<D: Domain, S> {
+pub struct PathTracer<D: Domain, S, M = PowerHeuristic> {
     /// Where random numbers come from.
     pub sampler: S,
     /// Length of paths, and when roulette begins.
     pub settings: Settings<D>,
+    /// How light is weighed that is found in two ways.
+    pub mis: M,
 }
 
-impl<D: Domain, S: Sampler<D>> PathTracer<D, S> {
+impl<D: Domain, S: Sampler<D>, M: Mis<D>> PathTracer<D, S, M> {
     #[inline(always)]
     fn pair(&self, d: D, path: &Path<D>, pair: u32) -> [D::F; 2] {
         let dimension = path.depth * d.uint(PAIRS) + d.uint(pair);
         self.sampler.pair(d, path.key, dimension)
     }
+
+    /// The weight of light found by a BSDF sample: 1 where light sampling could not have found it.
+    #[inline(always)]
+    fn bsdf_weight(&self, d: D, bsdf_pdf: D::F, light_pdf: D::F) -> D::F {
+        let alone = d.eq(bsdf_pdf, d.lit(0.0));
+        let safe = d.select(alone, d.lit(1.0), bsdf_pdf);
+        d.select(alone, d.lit(1.0), self.mis.of_bsdf(d, safe, light_pdf))
+    }
 }
 
-impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<D, S> {
+impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
     #[inline(always)]
     fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
         self.settings
@@ -52,7 +62,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<D, S> {
     ) -> Option<Color<D::F>> {
         let emission = vertex.emission?;
         let light_pdf = light::density(d, lights, &path.ray, vertex.surface);
-        Some(path.throughput * emission.scale(bsdf_weight(d, path.pdf, light_pdf)))
+        Some(path.throughput * emission.scale(self.bsdf_weight(d, path.pdf, light_pdf)))
     }
 
     #[inline(always)]
@@ -63,7 +73,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<D, S> {
         lights: &L,
     ) -> Option<Color<D::F>> {
         let seen = lights.background(d, path.ray.dir)?;
-        Some(path.throughput * seen.radiance.scale(bsdf_weight(d, path.pdf, seen.pdf)))
+        Some(path.throughput * seen.radiance.scale(self.bsdf_weight(d, path.pdf, seen.pdf)))
     }
 
     #[inline(always)]
@@ -91,7 +101,11 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<D, S> {
         let wi = surface.frame.to_local(d, sample.wi);
         let value = bsdf.eval(d, surface, wo, wi);
         let (zero, one) = (d.lit(0.0), d.lit(1.0));
-        let weight = d.select(sample.delta, one, power_heuristic(d, sample.pdf, value.pdf));
+        let weight = d.select(
+            sample.delta,
+            one,
+            self.mis.of_light(d, sample.pdf, value.pdf),
+        );
         let contribution =
             path.throughput * value.value * sample.radiance.scale(weight / sample.pdf);
 
@@ -150,12 +164,4 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for PathTracer<D, S> {
             active: alive & consistent(d, surface, dir, sample.wi),
         })
     }
-}
-
-/// The weight of light found by a BSDF sample: 1 where light sampling could not have found it.
-#[inline(always)]
-fn bsdf_weight<D: Domain>(d: D, bsdf_pdf: D::F, light_pdf: D::F) -> D::F {
-    let alone = d.eq(bsdf_pdf, d.lit(0.0));
-    let safe = d.select(alone, d.lit(1.0), bsdf_pdf);
-    d.select(alone, d.lit(1.0), power_heuristic(d, safe, light_pdf))
 }

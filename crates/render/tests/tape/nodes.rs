@@ -154,7 +154,7 @@ pub(crate) fn structure(lights: Vec<LightNode>) -> Structure {
         lights,
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
-        tracer: TracerNode::Path,
+        tracer: TracerNode::default(),
         layers: Layers::NONE,
     }
 }

@@ -164,7 +164,7 @@ impl Formula for AnyStep {
 
 #[test]
 fn steps_of_all_tracers() {
-    check(&AnyStep(TracerNode::Path));
+    check(&AnyStep(TracerNode::default()));
     check(&AnyStep(TracerNode::AmbientOcclusion));
     for view in DebugView::ALL {
         // A path of this tracer is at its end at once, which the recorder cannot know.

@@ -4,7 +4,7 @@ use residual_render::domain::Buffer;
 use residual_render::program::{Leaf, Program, Source};
 use residual_render::triangle::TriangleRecord;
 
-use super::options::Binding;
+use super::options::{Binding, LightPicks};
 use super::planned::Plan;
 
 /// A decision of the plan.
@@ -70,7 +70,12 @@ impl Plan {
                 match lights {
                     1 => "one; nothing to choose".to_owned(),
                     _ => format!(
-                        "{lights} in an alias table: half of the picks by power, half evenly by kind"
+                        "{lights} in an alias table: {}",
+                        match self.light_picks {
+                            LightPicks::Mixed => "half of the picks by power, half evenly by kind",
+                            LightPicks::Power => "picked by power",
+                            LightPicks::Uniform => "each picked as often as any other",
+                        }
                     ),
                 },
             ),

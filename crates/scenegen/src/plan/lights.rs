@@ -12,6 +12,7 @@ use residual_render::texture::srgb_table;
 
 use super::geometry::Geometry;
 use super::images::Images;
+use super::options::LightPicks;
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
 use crate::desc::{
@@ -33,6 +34,7 @@ pub(super) fn plan_lights(
     materials: &Materials,
     geometry: &Geometry,
     images: &mut Images,
+    picks: LightPicks,
     data: &mut SceneData,
 ) -> PlannedLights {
     let mut lights = PlannedLights::default();
@@ -44,7 +46,7 @@ pub(super) fn plan_lights(
     if let Some(environment) = &scene.environment {
         lights.add_environment(scene, environment, images, radius, data);
     }
-    lights.set_picks(data);
+    lights.set_picks(picks, data);
     lights
 }
 
@@ -233,10 +235,9 @@ impl PlannedLights {
         light::set_environment(data, header, alias_entries(&weights, mean));
     }
 
-    /// Half of the picks go by power, half evenly to emitting triangles, points, spots, … as far as there are any, so
-    /// that a bright sky outside does not starve the lamps inside. How many *programs* for emission there are must
+    /// Mixed picks go by power, and evenly to emitting triangles, points, spots, … as far as there are any. How many *programs* for emission there are must
     /// not matter: it differs between binding policies, whose images are the same.
-    fn set_picks(&self, data: &mut SceneData) {
+    fn set_picks(&self, picks: LightPicks, data: &mut SceneData) {
         let variant = |kind: usize| std::mem::discriminant(&self.kinds[kind]);
         let total: f64 = self.powers.iter().map(|(power, _)| power).sum();
         let of_variant = |kind: usize| -> f64 {
@@ -248,8 +249,12 @@ impl PlannedLights {
         };
         let sums: Vec<f64> = (0..self.kinds.len()).map(of_variant).collect();
         let variants: HashSet<_> = (0..self.kinds.len()).map(variant).collect();
-        let probability = |&(power, kind): &(f64, usize)| {
-            0.5 * power / total + 0.5 * power / sums[kind] / variants.len() as f64
+        let probability = |&(power, kind): &(f64, usize)| match picks {
+            LightPicks::Mixed => {
+                0.5 * power / total + 0.5 * power / sums[kind] / variants.len() as f64
+            }
+            LightPicks::Power => power / total,
+            LightPicks::Uniform => 1.0 / self.powers.len() as f64,
         };
         let probabilities: Vec<f64> = self.powers.iter().map(probability).collect();
         set_picks(data, alias_entries(&probabilities, 1.0));

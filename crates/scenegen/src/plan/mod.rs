@@ -31,7 +31,7 @@ use residual_render::tracer::TracerNode;
 pub use camera_choice::{CameraChoice, View};
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
-pub use options::{Binding, CullingRule, PlanOptions};
+pub use options::{Binding, CullingRule, LightPicks, PlanOptions};
 pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
 
 use crate::desc::{EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
@@ -49,12 +49,17 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
     // Only paths need lights.
     let lights = match options.tracer {
-        TracerNode::Path => {
-            lights::plan_lights(scene, &materials, &geometry, &mut images, &mut data)
-        }
+        TracerNode::Path(_) => lights::plan_lights(
+            scene,
+            &materials,
+            &geometry,
+            &mut images,
+            options.light_picks,
+            &mut data,
+        ),
         TracerNode::AmbientOcclusion | TracerNode::Debug(_) => lights::PlannedLights::default(),
     };
-    let needs_light = options.tracer == TracerNode::Path;
+    let needs_light = matches!(options.tracer, TracerNode::Path(_));
     // A black environment is darkness that was asked for.
     if needs_light && lights.kinds.is_empty() && scene.environment.is_none() {
         let mut plan = plan(&scene.with_white_sky(), options)?;
@@ -74,6 +79,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let mut plan = Plan {
         name: scene.name.clone(),
         binding: options.binding,
+        light_picks: options.light_picks,
         structure: Structure {
             programs: materials.programs,
             lights: lights.kinds,

@@ -27,6 +27,18 @@ pub enum CullingRule {
     None,
 }
 
+/// How often each light is picked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LightPicks {
+    /// Half of the picks by power, half evenly by kind, so that a bright sky outside does not starve the lamps inside.
+    #[default]
+    Mixed,
+    /// By power.
+    Power,
+    /// Each light as often as any other.
+    Uniform,
+}
+
 /// The user's choices.
 #[derive(Debug, Clone)]
 pub struct PlanOptions {
@@ -40,6 +52,8 @@ pub struct PlanOptions {
     pub culling: CullingRule,
     /// All triangles are flat, whatever normals they have.
     pub flat_normals: bool,
+    /// How often each light is picked.
+    pub light_picks: LightPicks,
     /// Sampler.
     pub sampler: AnySampler,
     /// What is computed along rays.
@@ -56,6 +70,7 @@ impl Default for PlanOptions {
             size: [640, 480],
             culling: CullingRule::default(),
             flat_normals: false,
+            light_picks: LightPicks::default(),
             sampler: AnySampler::Sobol,
             tracer: TracerNode::default(),
             layers: Layers::NONE,

@@ -9,7 +9,7 @@ use residual_render::scene_data::SceneData;
 use residual_render::tracer::TracerNode;
 use residual_render::triangle::ObjectRecord;
 
-use super::options::Binding;
+use super::options::{Binding, LightPicks};
 use crate::desc::{Dismissed, Warning};
 
 /// A scene, analysed.
@@ -19,6 +19,8 @@ pub struct Plan {
     pub name: String,
     /// When inputs are known.
     pub binding: Binding,
+    /// How often each light is picked.
+    pub light_picks: LightPicks,
     /// The static half.
     pub structure: Structure,
     /// The dynamic half.
@@ -53,7 +55,7 @@ impl Plan {
     pub fn default_reach(&self) -> f32 {
         match self.structure.tracer {
             TracerNode::AmbientOcclusion => 0.1 * self.diagonal,
-            TracerNode::Path | TracerNode::Debug(_) => self.diagonal,
+            TracerNode::Path(_) | TracerNode::Debug(_) => self.diagonal,
         }
     }
 }

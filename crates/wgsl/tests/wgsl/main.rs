@@ -96,7 +96,7 @@ fn every_camera_and_sampler() {
 #[test]
 fn every_tracer_and_layer() {
     let tracers = [
-        (TracerNode::Path, [true, true]),
+        (TracerNode::default(), [true, true]),
         (TracerNode::AmbientOcclusion, [true, false]),
         (TracerNode::Debug(DebugView::Normals), [false, false]),
         (TracerNode::Debug(DebugView::Depth), [false, false]),

@@ -47,7 +47,7 @@ pub(crate) fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Struc
         lights,
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
-        tracer: TracerNode::Path,
+        tracer: TracerNode::default(),
         layers: Layers::NONE,
     }
 }

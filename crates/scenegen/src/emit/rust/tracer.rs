@@ -4,7 +4,7 @@ use std::fmt::{self, Write as _};
 
 use residual_render::layer::Layers;
 use residual_render::program::Structure;
-use residual_render::tracer::TracerNode;
+use residual_render::tracer::{AnyMis, TracerNode};
 
 use super::layout::{Code, Name};
 use super::module::Module;
@@ -29,9 +29,16 @@ fn sampler(structure: &Structure) -> Code {
     Code::Word(Name::of("sampler", format!("{:?}", structure.sampler)))
 }
 
+fn weights(mis: AnyMis) -> Code {
+    Code::Word(Name::of("tracer", format!("{mis:?}")))
+}
+
 /// The associated type of the tracer.
 pub(super) fn associated_type(out: &mut Module, structure: &Structure) -> fmt::Result {
-    let parameters = [Code::word("D"), sampler(structure)];
+    let mut parameters = vec![Code::word("D"), sampler(structure)];
+    if let TracerNode::Path(mis) = structure.tracer {
+        parameters.push(weights(mis));
+    }
     let tracer = Code::generic(name(structure.tracer), parameters);
     let tracer = match structure.layers {
         Layers::NONE => tracer,
@@ -53,9 +60,13 @@ pub(super) fn method(out: &mut Module, structure: &Structure) -> fmt::Result {
         ("sampler", sampler(structure)),
         ("settings", Code::word("settings")),
     ];
-    if let TracerNode::Debug(view) = structure.tracer {
-        let view = Name::of("tracer", format!("DebugView::{view:?}"));
-        fields.push(("view", Code::Word(view)));
+    match structure.tracer {
+        TracerNode::Path(mis) => fields.push(("mis", weights(mis))),
+        TracerNode::AmbientOcclusion => {}
+        TracerNode::Debug(view) => {
+            let view = Name::of("tracer", format!("DebugView::{view:?}"));
+            fields.push(("view", Code::Word(view)));
+        }
     }
     let tracer = Code::literal(name(structure.tracer), fields);
     let tracer = match structure.layers {
@@ -75,7 +86,7 @@ pub(super) fn method(out: &mut Module, structure: &Structure) -> fmt::Result {
 
 fn name(tracer: TracerNode) -> Name {
     let name = match tracer {
-        TracerNode::Path => "PathTracer",
+        TracerNode::Path(_) => "PathTracer",
         TracerNode::AmbientOcclusion => "AmbientOcclusion",
         TracerNode::Debug(_) => "Debug",
     };
