@@ -14,8 +14,8 @@
 //!
 //! *The denominator is noisy.* With x in place of μ, error and denominator rise together, and the quotient falls short by a
 //! part that shrinks as 1/N. The same statistic of the even and of the odd samples falls short by twice that part: twice
-//! the one less the other is rid of it (the jackknife of halves; Quenouille 1949). And no pixel counts as brighter than
-//! its neighbours say it can be (`plausible.rs`).
+//! the one less the other is rid of it (the jackknife of halves; Quenouille 1949). And no pixel counts as far brighter
+//! than its neighbours (`plausible.rs`).
 //!
 //! *The interval is of the error of this image.* Where ε_i is the error of sample i of N independent ones, (x − μ)² differs from
 //! the samples' variance over N by Σ ε_i ε_j / N(N−1) over all i ≠ j, whose variance is 2 σ⁴ / N(N−1) for samples
@@ -23,7 +23,7 @@
 //! estimates σ⁴ without bias.
 
 use crate::moments::{CHANNELS, MeanVariance, PixelMoments, Y};
-use crate::plausible::brightest_plausible;
+use crate::plausible::{Plausible, plausible};
 
 /// Fewest samples of a pixel that say something of its error: two in each half.
 pub const FEWEST_SAMPLES: u64 = 4;
@@ -44,6 +44,17 @@ impl Sampled<'_> {
 
     fn halves(&self, channel: usize) -> [MeanVariance; 2] {
         self.moments.halves_of_channel(channel, self.samples)
+    }
+
+    /// Variance over the number of samples times a weight, by the jackknife of halves, each of which has its own weight.
+    fn jackknifed(&self, channel: usize, weight: f64, of_halves: [f64; 2]) -> f64 {
+        // Mean squared deviations, whose bias the jackknife takes out with that of the weights.
+        let squares = |variance: f64, count: u64| variance * (1.0 - 1.0 / count as f64);
+        let all = squares(self.channel(channel).variance, self.samples) * weight;
+        let halves = self.halves(channel);
+        let counts = [self.samples.div_ceil(2), self.samples / 2];
+        let half = |k: usize| squares(halves[k].variance, counts[k]) * of_halves[k];
+        (2.0 * all - 0.5 * (half(0) + half(1))) / self.samples as f64
     }
 }
 
@@ -138,16 +149,40 @@ const FEWEST_REPLICATES: usize = 16;
 /// Above this standard error, relative to the estimate, its distribution is not known well enough for an interval.
 const LARGEST_ERROR: f64 = 0.35;
 
-/// What one channel says.
-#[derive(Clone, Copy, Debug, Default)]
+/// What one channel says, or the mean of several.
+#[derive(Clone, Debug, Default)]
 struct Parts {
+    /// By which pixels.
+    contributions: Vec<f32>,
+    /// By which replicates.
+    replicates: Vec<Twice>,
+    /// Variance of the difference to the image's own error, for independent samples.
+    products: f64,
+    /// With the pixels' means as they are.
+    plain: f64,
+    /// Without the bias of that.
+    jackknifed: f64,
+}
+
+/// What a pixel that is sampled twice says of its squared error, relative to the square of its mean.
+#[derive(Clone, Copy, Debug)]
+struct Twice {
+    /// By the difference of the two sets.
+    between: f64,
+    /// By the variances within them, as if samples were independent.
+    within: f64,
+}
+
+/// The estimate, from its parts.
+#[derive(Clone, Copy, Debug)]
+struct Sums {
+    /// The estimate, and the variance that it has from the choice of replicates.
+    value: f64,
+    variance: f64,
     /// With the pixels' own variances and means.
     plain: f64,
     /// Without the bias of noisy means.
     jackknifed: f64,
-    /// What the replicates take off, and the variance of that.
-    correction: f64,
-    correction_variance: f64,
     /// Variance of the difference to the image's own error, for independent samples.
     products: f64,
     /// Sum of squares of the pixels' contributions.
@@ -184,11 +219,11 @@ impl ErrorEstimate {
             let mean = if channel == Y { means[Y] } else { color };
             Parts::of(width, pixels, used, channel, 1e-2 * mean * mean)
         });
-        let [red, green, blue, luminance] = parts;
-        let colors = Parts::together([red, green, blue]);
+        let colors = Parts::together(&parts[..Y]).sums();
+        let [red, green, blue, luminance] = parts.map(|parts| parts.sums());
         Some(Self {
             relmse: colors.interval(used.len()),
-            channels: [red, green, blue].map(|parts| parts.interval(used.len())),
+            channels: [red, green, blue].map(|sums| sums.interval(used.len())),
             luminance: luminance.interval(used.len()),
             design_effect: colors.design_effect(),
             distrust: colors.distrust(replicates.map(<[_]>::len)),
@@ -207,79 +242,136 @@ impl Parts {
         let image = |mean: &dyn Fn(&Sampled<'_>) -> f64| -> Vec<f32> {
             pixels.iter().map(|pixel| mean(pixel) as f32).collect()
         };
-        let limits = brightest_plausible(&image(&|pixel| pixel.channel(channel).mean), width);
-        let half_limits = [0, 1].map(|half| {
-            brightest_plausible(&image(&|pixel| pixel.halves(channel)[half].mean), width)
-        });
-        // One over the squared mean, where `limit` is the brightest that it can be.
-        let scale = |mean: f64, limit: f32| {
-            let squared = mean.min(f64::from(limit)).powi(2) + floor;
+        let limits = plausible(&image(&|pixel| pixel.channel(channel).mean), width);
+        let half_limits =
+            [0, 1].map(|half| plausible(&image(&|pixel| pixel.halves(channel)[half].mean), width));
+        // One over the squared mean, as far as that is plausible.
+        let scale = |mean: f64, limit: Plausible| {
+            let squared = limit.limit(mean).powi(2) + floor;
             if squared > 0.0 { 1.0 / squared } else { 0.0 }
         };
         let mut sums = Self::default();
-        let mut of_halves = 0.0;
+        let mut jackknifed = 0.0;
         for (p, pixel) in pixels.iter().enumerate() {
             let samples = pixel.samples as f64;
             let MeanVariance { mean, variance } = pixel.channel(channel);
             let weight = scale(mean, limits[p]);
             let contribution = variance / samples * weight;
             sums.plain += contribution;
-            sums.squares += contribution * contribution;
+            sums.contributions.push(contribution as f32);
             let halves = pixel.halves(channel);
             let product = halves[0].variance * halves[1].variance;
             sums.products += 2.0 * product * (weight / samples).powi(2);
-            for (half, limits) in halves.iter().zip(&half_limits) {
-                of_halves += 0.5 * half.variance / samples * scale(half.mean, limits[p]);
-            }
+            let of_half = |half: usize| scale(halves[half].mean, half_limits[half][p]);
+            jackknifed += pixel.jackknifed(channel, weight, [of_half(0), of_half(1)]);
         }
         let count = pixels.len() as f64;
         sums.plain /= count;
         // A larger correction is no longer one.
-        let jackknifed = 2.0 * sums.plain - of_halves / count;
-        sums.jackknifed = jackknifed.clamp(0.5 * sums.plain, 2.0 * sums.plain);
+        sums.jackknifed = (jackknifed / count).clamp(0.5 * sums.plain, 2.0 * sums.plain);
         sums.products /= count * count;
-        sums.squares /= count * count;
 
-        let differences = replicates.iter().map(|replicate| {
-            let [first, second] = [pixels[replicate.pixel], replicate.sampled];
-            let variance = [first, second]
-                .map(|sampled| sampled.channel(channel).variance / sampled.samples.max(1) as f64);
-            let means = [first, second].map(|sampled| sampled.channel(channel).mean);
-            let squared = (means[0] - means[1]).powi(2) - variance[0] - variance[1];
-            0.5 * squared * scale(0.5 * (means[0] + means[1]), limits[replicate.pixel])
-        });
-        let differences: Vec<f64> = differences.collect();
-        let number = differences.len().max(1) as f64;
-        sums.correction = differences.iter().sum::<f64>() / number;
-        let squares: f64 = differences
-            .iter()
-            .map(|d| (d - sums.correction).powi(2))
-            .sum();
-        sums.correction_variance = squares / (number - 1.0).max(1.0) / number;
+        sums.replicates.extend(replicates.iter().map(|replicate| {
+            let pair = [pixels[replicate.pixel], replicate.sampled];
+            let [first, second] = pair.map(|sampled| sampled.channel(channel).mean);
+            let weight = scale(0.5 * (first + second), limits[replicate.pixel]);
+            let within = pair.map(|sampled| sampled.jackknifed(channel, weight, [weight; 2]));
+            Twice {
+                between: 0.5 * (first - second).powi(2) * weight,
+                within: 0.5 * (within[0] + within[1]),
+            }
+        }));
         sums
     }
 
-    /// The mean of channels, which paths shade together: their errors are taken to rise and fall as one.
-    fn together(channels: [Self; 3]) -> Self {
-        let mean = |of: fn(&Self) -> f64| channels.iter().map(of).sum::<f64>() / 3.0;
+    /// The mean of channels.
+    fn together(channels: &[Self]) -> Self {
+        let count = channels.len() as f64;
+        let mean = |of: fn(&Self) -> f64| channels.iter().map(of).sum::<f64>() / count;
+        let contribution =
+            |p| channels.iter().map(|c| c.contributions[p]).sum::<f32>() / count as f32;
+        let twice = |r| {
+            let mean = |of: fn(&Twice) -> f64| {
+                channels.iter().map(|c| of(&c.replicates[r])).sum::<f64>() / count
+            };
+            Twice {
+                between: mean(|twice| twice.between),
+                within: mean(|twice| twice.within),
+            }
+        };
         Self {
+            contributions: (0..channels[0].contributions.len())
+                .map(contribution)
+                .collect(),
+            replicates: (0..channels[0].replicates.len()).map(twice).collect(),
+            // Paths shade all channels: their errors are taken to rise and fall as one.
+            products: mean(|c| c.products.sqrt()).powi(2),
             plain: mean(|c| c.plain),
             jackknifed: mean(|c| c.jackknifed),
-            correction: mean(|c| c.correction),
-            correction_variance: mean(|c| c.correction_variance.sqrt()).powi(2),
-            products: mean(|c| c.products.sqrt()).powi(2),
-            squares: mean(|c| c.squares.sqrt()).powi(2),
         }
     }
 
-    /// The estimate. No scrambled net of these is worse than independent points, and none so much better.
-    fn value(&self) -> f64 {
-        (self.jackknifed + self.correction).max(0.02 * self.jackknifed)
-    }
+    fn sums(&self) -> Sums {
+        let pixels = self.contributions.len() as f64;
+        let contributions = || self.contributions.iter().map(|c| f64::from(*c));
+        let squares = contributions().map(|c| c * c).sum::<f64>() / pixels / pixels;
+        if self.replicates.is_empty() {
+            return Sums {
+                value: self.jackknifed,
+                variance: 0.0,
+                plain: self.plain,
+                jackknifed: self.jackknifed,
+                products: self.products,
+                squares,
+            };
+        }
+        // What exceeds a few times the mean is not regressed on: bright samples are no better distributed than others.
+        let limit = 4.0 * self.plain;
+        let usual = |within: f64| within.min(limit);
+        let count = self.replicates.len() as f64;
+        let mean = |of: &dyn Fn(&Twice) -> f64| self.replicates.iter().map(of).sum::<f64>() / count;
+        let rest = |twice: &Twice| twice.between - (twice.within - usual(twice.within));
+        let (mean_rest, mean_usual) = (mean(&rest), mean(&|twice| usual(twice.within)));
+        let product = mean(&|twice| (rest(twice) - mean_rest) * (usual(twice.within) - mean_usual));
+        let spread = mean(&|twice| (usual(twice.within) - mean_usual).powi(2));
+        let slope = if spread > 0.0 {
+            (product / spread).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
 
+        let of_all = contributions()
+            .map(|c| c - (1.0 - slope) * usual(c))
+            .sum::<f64>()
+            / pixels;
+        let bias = if self.plain > 0.0 {
+            self.jackknifed / self.plain
+        } else {
+            1.0
+        };
+        let residuals: Vec<f64> = self
+            .replicates
+            .iter()
+            .map(|twice| rest(twice) - slope * usual(twice.within))
+            .collect();
+        // Replicates lie in a grid, one in each block: what changes slowly over the image is no error of their mean, so
+        // that neighbours are compared (successive differences; Wolter, *Introduction to Variance Estimation*, 8.2).
+        let steps = residuals.windows(2).map(|pair| (pair[0] - pair[1]).powi(2));
+        Sums {
+            value: (bias * of_all + residuals.iter().sum::<f64>() / count).max(0.0),
+            variance: 0.5 * steps.sum::<f64>() / (count - 1.0).max(1.0) / count,
+            plain: self.plain,
+            jackknifed: self.jackknifed,
+            products: self.products,
+            squares,
+        }
+    }
+}
+
+impl Sums {
     fn design_effect(&self) -> f64 {
         if self.jackknifed > 0.0 {
-            self.value() / self.jackknifed
+            self.value / self.jackknifed
         } else {
             1.0
         }
@@ -287,24 +379,23 @@ impl Parts {
 
     /// Standard error of the difference to the image's own error, relative to the estimate.
     fn relative_error(&self) -> f64 {
-        // The points' errors are so much smaller than those of independent ones.
-        let products = self.products * self.design_effect().min(1.0).powi(2);
+        if self.value == 0.0 {
+            return 0.0;
+        }
         // Of noisy means, what is left of their bias is taken to be as large as half of its correction, and half of the
         // square of the error, with which it grows. Where few pixels carry the error, the denominator of each is taken
         // to be known to a half.
-        let value = self.value();
-        let bias = (self.jackknifed - self.plain).powi(2) + value.powi(4);
-        let variance = products + self.correction_variance + 0.25 * (bias + self.squares);
-        if value > 0.0 {
-            variance.sqrt() / value
-        } else {
-            0.0
-        }
+        let bias = (self.jackknifed - self.plain).powi(2);
+        let independent = self.products + 0.25 * (bias + self.squares);
+        // These points' errors are so much smaller than those of independent ones.
+        let own = independent * self.design_effect().min(1.0).powi(2);
+        let variance = own + self.variance + 0.25 * self.value.powi(4);
+        variance.sqrt() / self.value
     }
 
     /// The interval is symmetric in the logarithm: errors are above zero.
     fn interval(&self, replicates: usize) -> Interval {
-        let value = self.value();
+        let value = self.value;
         // Student's quantile, to first order in the degrees of freedom.
         const NORMAL: f64 = 1.959_964;
         let freedom = replicates.saturating_sub(1);
@@ -331,7 +422,7 @@ impl Parts {
             Some(Distrust::FewReplicates { replicates })
         } else if pixels < FEWEST_CARRIERS {
             Some(Distrust::HeavyTails { pixels })
-        } else if correction > LARGEST_CORRECTION || self.value() > LARGEST_NOISE {
+        } else if correction > LARGEST_CORRECTION || self.value > LARGEST_NOISE {
             Some(Distrust::NoisyMeans)
         } else if relative > LARGEST_ERROR {
             Some(Distrust::WideInterval { relative })
