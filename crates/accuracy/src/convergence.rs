@@ -31,28 +31,31 @@ pub struct Forecast {
 }
 
 /// The first estimate that says something of how the error falls.
-const FIRST: u64 = 8;
+const FIRST: u64 = 16;
+/// The next is made after so many times its samples: each takes as long as some tenths of a sample of every pixel.
+const FACTOR: u64 = 4;
 /// The slope is that of so large a part of the samples: it changes on the way.
-const RECENT: u64 = 16;
+const RECENT: u64 = 64;
 /// How far the slope of other renders is from −1, before anything is known of this one: between independent points and the
 /// best of smooth pixels.
 const USUAL: f64 = 0.15;
 
 impl Convergence {
-    /// Whether the next estimate is due: after twice the samples of the last, or, on the way to a relative mean squared
-    /// error, when that may have been reached. Estimates take time, so that few are made.
+    /// Whether the next estimate is due: after four times the samples of the last, or, on the way to a relative mean squared
+    /// error, when that may have been reached, and after twice the samples at the latest. Estimates take time, so that few are
+    /// made.
     pub fn is_due(&self, samples: u64, target: Option<f64>) -> bool {
         let Some(last) = self.measured.last() else {
             return samples >= FIRST;
         };
-        let doubled = 2 * last.samples;
-        let reached = target.map_or(doubled, |target| {
+        let due = target.map_or(FACTOR * last.samples, |target| {
             // The upper end has to be below the target, and falls as the error does.
             let factor = (last.error.relmse.high / target).powf(-1.0 / self.slope().value);
             let expected = (last.samples as f64 * factor) as u64;
-            expected.max(last.samples + last.samples.div_ceil(16))
+            let soonest = last.samples + last.samples.div_ceil(16);
+            expected.clamp(soonest, 2 * last.samples)
         });
-        samples >= doubled.min(reached)
+        samples >= due
     }
 
     /// Adds an estimate, of more samples than the last.
@@ -166,7 +169,7 @@ mod tests {
     /// A render whose error falls with this power, estimated without noise at powers of two.
     fn render(power: f64, relative: f64) -> Convergence {
         let mut convergence = Convergence::default();
-        for samples in (3..=7).map(|k| 1 << k) {
+        for samples in [16, 64, 256] {
             assert!(convergence.is_due(samples, None) && !convergence.is_due(samples - 1, None));
             convergence.add(Measured {
                 samples,
@@ -190,8 +193,8 @@ mod tests {
                 (half.factor / factor - 1.0).abs() < 0.02,
                 "{half:?}, not {factor}"
             );
-            assert!((half.seconds / (64.0 * half.factor) - 1.0).abs() < 1e-12);
-            assert!((half.samples / (128.0 * half.factor) - 1.0).abs() < 1e-12);
+            assert!((half.seconds / (128.0 * half.factor) - 1.0).abs() < 1e-12);
+            assert!((half.samples / (256.0 * half.factor) - 1.0).abs() < 1e-12);
         }
     }
 
@@ -208,8 +211,8 @@ mod tests {
         // Four times the target, falling as 1 / N: after four times the samples, so first after twice.
         let render = render(-1.0, 1e-3);
         let high = render.last().unwrap().error.relmse.high;
-        assert!(!render.is_due(255, Some(high / 4.0)) && render.is_due(256, Some(high / 4.0)));
+        assert!(!render.is_due(511, Some(high / 4.0)) && render.is_due(512, Some(high / 4.0)));
         // A fifth above it.
-        assert!(!render.is_due(150, Some(high / 1.2)) && render.is_due(155, Some(high / 1.2)));
+        assert!(!render.is_due(300, Some(high / 1.2)) && render.is_due(310, Some(high / 1.2)));
     }
 }

@@ -22,8 +22,9 @@
 //! of any distribution: the squares, and with them the bright samples, cancel. The product of the two halves' variances
 //! estimates σ⁴ without bias.
 
-use crate::moments::{CHANNELS, MeanVariance, PixelMoments, Y};
-use crate::plausible::{Plausible, plausible};
+use crate::distrust::Distrust;
+use crate::moments::{CHANNELS, PixelMoments, Y};
+use crate::pixel_errors::{PixelErrors, Twice};
 
 /// Fewest samples of a pixel that say something of its error: two in each half.
 pub const FEWEST_SAMPLES: u64 = 4;
@@ -35,27 +36,6 @@ pub struct Sampled<'a> {
     pub moments: &'a PixelMoments,
     /// How many there are.
     pub samples: u64,
-}
-
-impl Sampled<'_> {
-    fn channel(&self, channel: usize) -> MeanVariance {
-        self.moments.channel(channel, self.samples)
-    }
-
-    fn halves(&self, channel: usize) -> [MeanVariance; 2] {
-        self.moments.halves_of_channel(channel, self.samples)
-    }
-
-    /// Variance over the number of samples times a weight, by the jackknife of halves, each of which has its own weight.
-    fn jackknifed(&self, channel: usize, weight: f64, of_halves: [f64; 2]) -> f64 {
-        // Mean squared deviations, whose bias the jackknife takes out with that of the weights.
-        let squares = |variance: f64, count: u64| variance * (1.0 - 1.0 / count as f64);
-        let all = squares(self.channel(channel).variance, self.samples) * weight;
-        let halves = self.halves(channel);
-        let counts = [self.samples.div_ceil(2), self.samples / 2];
-        let half = |k: usize| squares(halves[k].variance, counts[k]) * of_halves[k];
-        (2.0 * all - 0.5 * (half(0) + half(1))) / self.samples as f64
-    }
 }
 
 /// A second, independent set of as many samples of a pixel, with points of the same kind.
@@ -93,85 +73,16 @@ pub struct ErrorEstimate {
     pub distrust: Option<Distrust>,
 }
 
-/// Why a stated interval may not hold the truth as often as it says.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Distrust {
-    /// Few bright samples carry the error: there may be others that no path has found yet.
-    HeavyTails {
-        /// Over how many pixels the error is spread, in effect: (Σ c)² ÷ Σ c² of the pixels' contributions.
-        pixels: f64,
-    },
-    /// The pixels' means are too noisy to say what a relative error is relative to.
-    NoisyMeans,
-    /// Too few pixels were sampled a second time.
-    FewReplicates {
-        /// How many were.
-        replicates: usize,
-    },
-    /// The second samples say too little of how well the points are distributed.
-    WideInterval {
-        /// Standard error of the estimate, relative to it.
-        relative: f64,
-    },
-}
-
-impl std::fmt::Display for Distrust {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::HeavyTails { pixels } => write!(
-                f,
-                "few bright samples carry the error, that of {pixels:.0} pixels in effect; \
-                 there may be others that no path has found yet"
-            ),
-            Self::NoisyMeans => {
-                f.write_str("the pixels are too noisy to say what their error is relative to; more samples say more")
-            }
-            Self::FewReplicates { replicates } => {
-                write!(f, "only {replicates} pixels were sampled twice")
-            }
-            Self::WideInterval { relative } => write!(
-                f,
-                "its own standard error is {:.0} % of it; larger images say more",
-                100.0 * relative
-            ),
-        }
-    }
-}
-
 /// Below this many pixels that carry the error in effect, it has heavy tails.
 const FEWEST_CARRIERS: f64 = 400.0;
 /// Above this part of the estimate, the correction for noisy means is too large to trust what is left.
-const LARGEST_CORRECTION: f64 = 0.15;
+const LARGEST_CORRECTION: f64 = 0.1;
 /// Above this error, pixels are so noisy that what the correction leaves is large, too.
 const LARGEST_NOISE: f64 = 0.2;
 /// Fewest replicates from which a standard error can be had.
 const FEWEST_REPLICATES: usize = 16;
 /// Above this standard error, relative to the estimate, its distribution is not known well enough for an interval.
 const LARGEST_ERROR: f64 = 0.35;
-
-/// What one channel says, or the mean of several.
-#[derive(Clone, Debug, Default)]
-struct Parts {
-    /// By which pixels.
-    contributions: Vec<f32>,
-    /// By which replicates.
-    replicates: Vec<Twice>,
-    /// Variance of the difference to the image's own error, for independent samples.
-    products: f64,
-    /// With the pixels' means as they are.
-    plain: f64,
-    /// Without the bias of that.
-    jackknifed: f64,
-}
-
-/// What a pixel that is sampled twice says of its squared error, relative to the square of its mean.
-#[derive(Clone, Copy, Debug)]
-struct Twice {
-    /// By the difference of the two sets.
-    between: f64,
-    /// By the variances within them, as if samples were independent.
-    within: f64,
-}
 
 /// The estimate, from its parts.
 #[derive(Clone, Copy, Debug)]
@@ -205,135 +116,65 @@ impl ErrorEstimate {
             return None;
         }
         assert_eq!(pixels.len() % width, 0, "whole rows");
-        let count = pixels.len() as f64;
-        let means: [f64; CHANNELS] = std::array::from_fn(|k| {
-            pixels
-                .iter()
-                .map(|pixel| pixel.channel(k).mean)
-                .sum::<f64>()
-                / count
-        });
-        let color = (means[0] + means[1] + means[2]) / 3.0;
-        let used = replicates.unwrap_or(&[]);
-        let parts = [0, 1, 2, Y].map(|channel| {
-            let mean = if channel == Y { means[Y] } else { color };
-            Parts::of(width, pixels, used, channel, 1e-2 * mean * mean)
-        });
-        let colors = Parts::together(&parts[..Y]).sums();
-        let [red, green, blue, luminance] = parts.map(|parts| parts.sums());
+        let replicated = replicates.unwrap_or(&[]);
+        let errors = PixelErrors::of(width, pixels, replicated);
+        let colors = Sums::of(&errors, [0, 1, 2]);
+        let [red, green, blue, luminance] =
+            [0, 1, 2, Y].map(|channel| Sums::of(&errors, [channel]));
+        let used = replicated.len();
         Some(Self {
-            relmse: colors.interval(used.len()),
-            channels: [red, green, blue].map(|sums| sums.interval(used.len())),
-            luminance: luminance.interval(used.len()),
+            relmse: colors.interval(used),
+            channels: [red, green, blue].map(|sums| sums.interval(used)),
+            luminance: luminance.interval(used),
             design_effect: colors.design_effect(),
             distrust: colors.distrust(replicates.map(<[_]>::len)),
         })
     }
 }
 
-impl Parts {
-    fn of(
-        width: usize,
-        pixels: &[Sampled<'_>],
-        replicates: &[Replicate<'_>],
-        channel: usize,
-        floor: f64,
-    ) -> Self {
-        let image = |mean: &dyn Fn(&Sampled<'_>) -> f64| -> Vec<f32> {
-            pixels.iter().map(|pixel| mean(pixel) as f32).collect()
-        };
-        let limits = plausible(&image(&|pixel| pixel.channel(channel).mean), width);
-        let half_limits =
-            [0, 1].map(|half| plausible(&image(&|pixel| pixel.halves(channel)[half].mean), width));
-        // One over the squared mean, as far as that is plausible.
-        let scale = |mean: f64, limit: Plausible| {
-            let squared = limit.limit(mean).powi(2) + floor;
-            if squared > 0.0 { 1.0 / squared } else { 0.0 }
-        };
-        let mut sums = Self::default();
-        let mut jackknifed = 0.0;
-        for (p, pixel) in pixels.iter().enumerate() {
-            let samples = pixel.samples as f64;
-            let MeanVariance { mean, variance } = pixel.channel(channel);
-            let weight = scale(mean, limits[p]);
-            let contribution = variance / samples * weight;
-            sums.plain += contribution;
-            sums.contributions.push(contribution as f32);
-            let halves = pixel.halves(channel);
-            let product = halves[0].variance * halves[1].variance;
-            sums.products += 2.0 * product * (weight / samples).powi(2);
-            let of_half = |half: usize| scale(halves[half].mean, half_limits[half][p]);
-            jackknifed += pixel.jackknifed(channel, weight, [of_half(0), of_half(1)]);
-        }
-        let count = pixels.len() as f64;
-        sums.plain /= count;
-        // A larger correction is no longer one.
-        sums.jackknifed = (jackknifed / count).clamp(0.5 * sums.plain, 2.0 * sums.plain);
-        sums.products /= count * count;
-
-        sums.replicates.extend(replicates.iter().map(|replicate| {
-            let pair = [pixels[replicate.pixel], replicate.sampled];
-            let [first, second] = pair.map(|sampled| sampled.channel(channel).mean);
-            let weight = scale(0.5 * (first + second), limits[replicate.pixel]);
-            let within = pair.map(|sampled| sampled.jackknifed(channel, weight, [weight; 2]));
-            Twice {
-                between: 0.5 * (first - second).powi(2) * weight,
-                within: 0.5 * (within[0] + within[1]),
-            }
-        }));
-        sums
-    }
-
+impl Sums {
     /// The mean of channels.
-    fn together(channels: &[Self]) -> Self {
-        let count = channels.len() as f64;
-        let mean = |of: fn(&Self) -> f64| channels.iter().map(of).sum::<f64>() / count;
-        let contribution =
-            |p| channels.iter().map(|c| c.contributions[p]).sum::<f32>() / count as f32;
-        let twice = |r| {
-            let mean = |of: fn(&Twice) -> f64| {
-                channels.iter().map(|c| of(&c.replicates[r])).sum::<f64>() / count
+    fn of<const N: usize>(errors: &PixelErrors, channels: [usize; N]) -> Self {
+        let one_over = 1.0 / N as f64;
+        let mean =
+            |of: &dyn Fn(usize) -> f64| channels.iter().map(|&k| of(k)).sum::<f64>() * one_over;
+        let plain = mean(&|k| errors.plain[k]);
+        let jackknifed = mean(&|k| errors.jackknifed[k]);
+        // Paths shade all channels: their errors are taken to rise and fall as one.
+        let products = mean(&|k| errors.products[k].sqrt()).powi(2);
+        let contributions = || {
+            let of_pixel = |c: &[f32; CHANNELS]| {
+                channels.iter().map(|&k| f64::from(c[k])).sum::<f64>() * one_over
             };
-            Twice {
-                between: mean(|twice| twice.between),
-                within: mean(|twice| twice.within),
-            }
+            errors.contributions.iter().map(of_pixel)
         };
-        Self {
-            contributions: (0..channels[0].contributions.len())
-                .map(contribution)
-                .collect(),
-            replicates: (0..channels[0].replicates.len()).map(twice).collect(),
-            // Paths shade all channels: their errors are taken to rise and fall as one.
-            products: mean(|c| c.products.sqrt()).powi(2),
-            plain: mean(|c| c.plain),
-            jackknifed: mean(|c| c.jackknifed),
-        }
-    }
-
-    fn sums(&self) -> Sums {
-        let pixels = self.contributions.len() as f64;
-        let contributions = || self.contributions.iter().map(|c| f64::from(*c));
+        let replicates: Vec<[f64; 2]> = errors
+            .replicates
+            .iter()
+            .map(|Twice { between, within }| [mean(&|k| between[k]), mean(&|k| within[k])])
+            .collect();
+        let pixels = errors.contributions.len() as f64;
         let squares = contributions().map(|c| c * c).sum::<f64>() / pixels / pixels;
-        if self.replicates.is_empty() {
-            return Sums {
-                value: self.jackknifed,
+        if replicates.is_empty() {
+            return Self {
+                value: jackknifed,
                 variance: 0.0,
-                plain: self.plain,
-                jackknifed: self.jackknifed,
-                products: self.products,
+                plain,
+                jackknifed,
+                products,
                 squares,
             };
         }
         // What exceeds a few times the mean is not regressed on: bright samples are no better distributed than others.
-        let limit = 4.0 * self.plain;
+        let limit = 4.0 * plain;
         let usual = |within: f64| within.min(limit);
-        let count = self.replicates.len() as f64;
-        let mean = |of: &dyn Fn(&Twice) -> f64| self.replicates.iter().map(of).sum::<f64>() / count;
-        let rest = |twice: &Twice| twice.between - (twice.within - usual(twice.within));
-        let (mean_rest, mean_usual) = (mean(&rest), mean(&|twice| usual(twice.within)));
-        let product = mean(&|twice| (rest(twice) - mean_rest) * (usual(twice.within) - mean_usual));
-        let spread = mean(&|twice| (usual(twice.within) - mean_usual).powi(2));
+        let count = replicates.len() as f64;
+        let mean =
+            |of: &dyn Fn([f64; 2]) -> f64| replicates.iter().copied().map(of).sum::<f64>() / count;
+        let rest = |[between, within]: [f64; 2]| between - (within - usual(within));
+        let (mean_rest, mean_usual) = (mean(&rest), mean(&|[_, within]| usual(within)));
+        let product = mean(&|twice| (rest(twice) - mean_rest) * (usual(twice[1]) - mean_usual));
+        let spread = mean(&|[_, within]| (usual(within) - mean_usual).powi(2));
         let slope = if spread > 0.0 {
             (product / spread).clamp(0.0, 1.0)
         } else {
@@ -344,31 +185,24 @@ impl Parts {
             .map(|c| c - (1.0 - slope) * usual(c))
             .sum::<f64>()
             / pixels;
-        let bias = if self.plain > 0.0 {
-            self.jackknifed / self.plain
-        } else {
-            1.0
-        };
-        let residuals: Vec<f64> = self
-            .replicates
+        let bias = if plain > 0.0 { jackknifed / plain } else { 1.0 };
+        let residuals: Vec<f64> = replicates
             .iter()
-            .map(|twice| rest(twice) - slope * usual(twice.within))
+            .map(|&twice| rest(twice) - slope * usual(twice[1]))
             .collect();
         // Replicates lie in a grid, one in each block: what changes slowly over the image is no error of their mean, so
         // that neighbours are compared (successive differences; Wolter, *Introduction to Variance Estimation*, 8.2).
         let steps = residuals.windows(2).map(|pair| (pair[0] - pair[1]).powi(2));
-        Sums {
+        Self {
             value: (bias * of_all + residuals.iter().sum::<f64>() / count).max(0.0),
             variance: 0.5 * steps.sum::<f64>() / (count - 1.0).max(1.0) / count,
-            plain: self.plain,
-            jackknifed: self.jackknifed,
-            products: self.products,
+            plain,
+            jackknifed,
+            products,
             squares,
         }
     }
-}
 
-impl Sums {
     fn design_effect(&self) -> f64 {
         if self.jackknifed > 0.0 {
             self.value / self.jackknifed
@@ -382,11 +216,11 @@ impl Sums {
         if self.value == 0.0 {
             return 0.0;
         }
-        // Of noisy means, what is left of their bias is taken to be as large as half of its correction, and half of the
+        // Of noisy means, what is left of their bias is taken to be nearly as large as its correction, and as half of the
         // square of the error, with which it grows. Where few pixels carry the error, the denominator of each is taken
         // to be known to a half.
         let bias = (self.jackknifed - self.plain).powi(2);
-        let independent = self.products + 0.25 * (bias + self.squares);
+        let independent = self.products + 0.5 * bias + 0.25 * self.squares;
         // These points' errors are so much smaller than those of independent ones.
         let own = independent * self.design_effect().min(1.0).powi(2);
         let variance = own + self.variance + 0.25 * self.value.powi(4);

@@ -10,6 +10,7 @@
 pub mod color_map;
 pub mod comparison;
 mod convergence;
+mod distrust;
 mod error_estimate;
 mod estimate;
 pub mod flip;
@@ -17,11 +18,13 @@ mod jackknife;
 mod luminance;
 mod moments;
 mod normal;
+mod pixel_errors;
 mod plausible;
 mod relative_mse;
 
 pub use convergence::{Convergence, Forecast, Measured};
-pub use error_estimate::{Distrust, ErrorEstimate, FEWEST_SAMPLES, Interval, Replicate, Sampled};
+pub use distrust::Distrust;
+pub use error_estimate::{ErrorEstimate, FEWEST_SAMPLES, Interval, Replicate, Sampled};
 pub use estimate::Estimate;
 pub use flip::flip;
 pub use jackknife::Jackknifed;

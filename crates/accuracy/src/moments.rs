@@ -46,23 +46,23 @@ impl Moments {
         }
     }
 
-    /// Mean and variance of a channel of `count` samples.
-    #[inline(always)]
-    fn channel(&self, channel: usize, count: u64) -> MeanVariance {
+    fn statistics(&self, count: u64) -> MeanVariance {
+        let one_over = 1.0 / count.max(1) as f64;
+        let one_over_freedom = 1.0 / count.saturating_sub(1).max(1) as f64;
         MeanVariance {
-            mean: self.sum[channel] / count.max(1) as f64,
-            variance: self.deviations[channel] / count.saturating_sub(1).max(1) as f64,
+            mean: self.sum.map(|sum| sum * one_over),
+            variance: self.deviations.map(|squares| squares * one_over_freedom),
         }
     }
 }
 
-/// Mean of samples, 0 of none, and variance of one of them, without bias, 0 of one.
+/// Mean of samples, 0 of none, and variance of one of them, without bias, 0 of one; of red, green, blue and luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeanVariance {
     /// Mean.
-    pub mean: f64,
+    pub mean: [f64; CHANNELS],
     /// Variance of a sample, not of the mean.
-    pub variance: f64,
+    pub variance: [f64; CHANNELS],
 }
 
 /// Sums of the samples of one pixel, even and odd samples apart: what one half says can be weighed by what the other says.
@@ -72,7 +72,7 @@ pub struct PixelMoments {
 }
 
 /// How many of `count` samples are in the even and in the odd half.
-fn halves_of(count: u64) -> [u64; 2] {
+pub(crate) fn halves_of(count: u64) -> [u64; 2] {
     [count.div_ceil(2), count / 2]
 }
 
@@ -100,26 +100,33 @@ impl PixelMoments {
         self.halves[at.half].add([rgb[0], rgb[1], rgb[2], luminance(rgb)], at.step);
     }
 
-    /// Mean and variance of a channel of all `count` samples (Chan, Golub and LeVeque 1979).
+    /// Mean of all `count` samples, of red, green, blue and luminance.
     #[inline(always)]
-    pub fn channel(&self, channel: usize, count: u64) -> MeanVariance {
-        let [even, odd] = self.halves_of_channel(channel, count);
-        let counts = halves_of(count).map(|count| count as f64);
-        let between = (even.mean - odd.mean).powi(2) * counts[0] * counts[1];
+    pub fn mean(&self, count: u64) -> [f64; CHANNELS] {
+        let one_over = 1.0 / count.max(1) as f64;
         let [a, b] = &self.halves;
-        let all = count.max(1) as f64;
-        let deviations = a.deviations[channel] + b.deviations[channel] + between / all;
-        MeanVariance {
-            mean: (a.sum[channel] + b.sum[channel]) / all,
-            variance: deviations / (all - 1.0).max(1.0),
-        }
+        std::array::from_fn(|k| (a.sum[k] + b.sum[k]) * one_over)
     }
 
-    /// The same of the even and of the odd ones.
+    /// Mean and variance of all `count` samples (Chan, Golub and LeVeque 1979), and of the even and of the odd ones.
     #[inline(always)]
-    pub fn halves_of_channel(&self, channel: usize, count: u64) -> [MeanVariance; 2] {
+    pub fn statistics(&self, count: u64) -> (MeanVariance, [MeanVariance; 2]) {
         let counts = halves_of(count);
-        [0, 1].map(|half| self.halves[half].channel(channel, counts[half]))
+        let [a, b] = &self.halves;
+        let halves = [a.statistics(counts[0]), b.statistics(counts[1])];
+        let weight = counts[0] as f64 * counts[1] as f64 / count.max(1) as f64;
+        let one_over_freedom = 1.0 / count.saturating_sub(1).max(1) as f64;
+        let mut variance = [0.0; CHANNELS];
+        for (k, variance) in variance.iter_mut().enumerate() {
+            let between = halves[0].mean[k] - halves[1].mean[k];
+            let squares = a.deviations[k] + b.deviations[k] + between * between * weight;
+            *variance = squares * one_over_freedom;
+        }
+        let all = MeanVariance {
+            mean: self.mean(count),
+            variance,
+        };
+        (all, halves)
     }
 }
 
@@ -142,20 +149,21 @@ mod tests {
         for (index, &value) in values.iter().enumerate() {
             pixel.add([value, 2.0 * value, 0.5], SampleIndex::new(index as u64));
         }
-        let close = |ours: &dyn Fn(usize) -> MeanVariance, values: &[f64]| {
+        let close = |ours: MeanVariance, values: &[f64]| {
             let [mean, variance] = direct(values);
-            assert!((ours(0).mean - mean).abs() < 1e-12);
-            assert!((ours(0).variance - variance).abs() < 1e-12);
-            assert!((ours(1).variance - 4.0 * variance).abs() < 1e-11);
-            assert!(ours(2).variance < 1e-20);
+            assert!((ours.mean[0] - mean).abs() < 1e-12);
+            assert!((ours.variance[0] - variance).abs() < 1e-12);
+            assert!((ours.variance[1] - 4.0 * variance).abs() < 1e-11);
+            assert!(ours.variance[2] < 1e-20);
             let y = luminance([1.0, 2.0, 0.0]);
-            assert!((ours(Y).variance - y * y * variance).abs() < 1e-11);
+            assert!((ours.variance[Y] - y * y * variance).abs() < 1e-11);
         };
         let half =
             |parity| -> Vec<f64> { values.iter().copied().skip(parity).step_by(2).collect() };
-        close(&|k| pixel.halves_of_channel(k, 13)[0], &half(0));
-        close(&|k| pixel.halves_of_channel(k, 13)[1], &half(1));
-        close(&|k| pixel.channel(k, 13), &values);
+        let (all, halves) = pixel.statistics(13);
+        close(halves[0], &half(0));
+        close(halves[1], &half(1));
+        close(all, &values);
     }
 
     /// S-02: a mean that is large beside the deviations.
@@ -166,7 +174,7 @@ mod tests {
             let value = 1e6 + if index / 2 % 2 == 0 { 0.5 } else { -0.5 };
             pixel.add([value; 3], SampleIndex::new(index));
         }
-        let variance = pixel.channel(0, 1 << 16).variance;
+        let variance = pixel.statistics(1 << 16).0.variance[0];
         assert!((variance / 0.25 - 1.0).abs() < 1e-4, "{variance}");
     }
 
@@ -174,11 +182,11 @@ mod tests {
     fn nothing_has_no_moments() {
         let pixel = PixelMoments::default();
         let nothing = MeanVariance {
-            mean: 0.0,
-            variance: 0.0,
+            mean: [0.0; CHANNELS],
+            variance: [0.0; CHANNELS],
         };
-        assert_eq!(pixel.channel(0, 0), nothing);
-        assert_eq!(pixel.channel(Y, 1), nothing);
+        assert_eq!(pixel.statistics(0), (nothing, [nothing; 2]));
+        assert_eq!(pixel.statistics(1).0, nothing);
         assert_eq!(halves_of(5), [3, 2]);
     }
 }

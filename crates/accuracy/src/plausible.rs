@@ -4,78 +4,81 @@
 //! path has hit has a mean that is far too high, and its error, divided by that, seems small. A pixel that is brighter by far
 //! than its neighbours is therefore taken to be as bright as they are: real edges and highlights have neighbours as bright.
 
-/// What a pixel's neighbours say of it.
+use crate::moments::CHANNELS;
+
+type Channels = [f32; CHANNELS];
+
+/// What a pixel's neighbours say of it, by channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Plausible {
     /// The mean of the second and third brightest of its eight neighbours.
-    bright: f32,
+    bright: Channels,
     /// As far above that as three times its distance to their median: noise hardly gets there.
-    most: f32,
+    most: Channels,
 }
 
 impl Plausible {
-    /// The pixel's mean, or, if that is implausible, what it would be as one of its bright neighbours.
+    /// What the neighbours of pixel `p` say, in an image of `width` pixels a row. Everything is plausible where it is less than
+    /// three pixels wide or high. Outside of the image, the nearest pixels inside stand in.
     #[inline(always)]
-    pub(crate) fn limit(&self, mean: f64) -> f64 {
-        if mean > f64::from(self.most) {
-            f64::from(self.bright)
-        } else {
-            mean
+    pub(crate) fn around(image: &[Channels], width: usize, p: usize) -> Self {
+        let height = image.len() / width;
+        if width < 3 || height < 3 {
+            return Self {
+                bright: [f32::MAX; CHANNELS],
+                most: [f32::MAX; CHANNELS],
+            };
         }
-    }
-}
-
-/// For each pixel of an image of `width` pixels a row; everything is plausible where it is less than three pixels wide or
-/// high.
-pub(crate) fn plausible(image: &[f32], width: usize) -> Vec<Plausible> {
-    let height = image.len() / width.max(1);
-    let anything = Plausible {
-        bright: f32::MAX,
-        most: f32::MAX,
-    };
-    let mut result = vec![anything; image.len()];
-    if width < 3 || height < 3 {
-        return result;
-    }
-    for y in 0..height {
-        // Outside of the image, the nearest inside stands in.
-        let rows = [y.saturating_sub(1), y, (y + 1).min(height - 1)]
-            .map(|row| &image[row * width..][..width]);
-        let of_row = &mut result[y * width..][..width];
-        for x in 1..width - 1 {
-            of_row[x] = neighbours(rows, [x - 1, x, x + 1]);
+        let (x, y) = (p % width, p / width);
+        let [left, right] = [
+            if x > 0 { x - 1 } else { 1 },
+            if x + 1 < width { x + 1 } else { width - 2 },
+        ];
+        let [above, beside, below] = [
+            if y > 0 { y - 1 } else { 1 },
+            y,
+            if y + 1 < height { y + 1 } else { height - 2 },
+        ]
+        .map(|row| &image[row * width..][..width]);
+        let sorted = sorted([
+            above[left],
+            above[x],
+            above[right],
+            beside[left],
+            beside[right],
+            below[left],
+            below[x],
+            below[right],
+        ]);
+        let mut said = Self {
+            bright: [0.0; CHANNELS],
+            most: [0.0; CHANNELS],
+        };
+        for (k, (bright, most)) in said.bright.iter_mut().zip(&mut said.most).enumerate() {
+            let median = 0.5 * (sorted[3][k] + sorted[4][k]);
+            *bright = 0.5 * (sorted[5][k] + sorted[6][k]);
+            *most = *bright + 3.0 * (*bright - median);
         }
-        of_row[0] = neighbours(rows, [1, 0, 1]);
-        of_row[width - 1] = neighbours(rows, [width - 2, width - 1, width - 2]);
+        said
     }
-    result
-}
 
-/// What those say that lie around the middle of three rows and columns.
-#[inline(always)]
-fn neighbours(rows: [&[f32]; 3], [left, middle, right]: [usize; 3]) -> Plausible {
-    let [above, beside, below] = rows;
-    let sorted = sorted([
-        above[left],
-        above[middle],
-        above[right],
-        beside[left],
-        beside[right],
-        below[left],
-        below[middle],
-        below[right],
-    ]);
-    let bright = 0.5 * (sorted[5] + sorted[6]);
-    let median = 0.5 * (sorted[3] + sorted[4]);
-    Plausible {
-        bright,
-        most: bright + 3.0 * (bright - median),
+    /// The pixel's mean, or, where that is implausible, what it would be as one of its bright neighbours.
+    #[inline(always)]
+    pub(crate) fn limit(&self, mean: [f64; CHANNELS]) -> [f64; CHANNELS] {
+        let mut limited = mean;
+        for k in 0..CHANNELS {
+            if mean[k] > f64::from(self.most[k]) {
+                limited[k] = f64::from(self.bright[k]);
+            }
+        }
+        limited
     }
 }
 
-/// Eight numbers in ascending order, by a network of comparisons (Knuth, *The Art of Computer Programming* 3, 5.3.4).
+/// Eight numbers in ascending order, by a network of comparisons (Knuth, *The Art of Computer Programming* 3, 5.3.4), for each
+/// channel.
 #[inline(always)]
-fn sorted(mut values: [f32; 8]) -> [f32; 8] {
+fn sorted(mut values: [Channels; 8]) -> [Channels; 8] {
     const NETWORK: [(usize, usize); 19] = [
         (0, 2),
         (1, 3),
@@ -98,10 +101,12 @@ fn sorted(mut values: [f32; 8]) -> [f32; 8] {
         (5, 6),
     ];
     for (a, b) in NETWORK {
-        let (low, high) = (values[a], values[b]);
-        let is_sorted = low <= high;
-        values[a] = if is_sorted { low } else { high };
-        values[b] = if is_sorted { high } else { low };
+        let (first, second) = (values[a], values[b]);
+        for k in 0..CHANNELS {
+            let is_sorted = first[k] <= second[k];
+            values[a][k] = if is_sorted { first[k] } else { second[k] };
+            values[b][k] = if is_sorted { second[k] } else { first[k] };
+        }
     }
     values
 }
@@ -109,6 +114,7 @@ fn sorted(mut values: [f32; 8]) -> [f32; 8] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::moments::Y;
 
     #[test]
     fn a_speck_is_implausible_and_an_edge_is_not() {
@@ -120,31 +126,39 @@ mod tests {
                 _ => 5.0,
             })
             .collect();
-        let said = plausible(&image, 8);
-        for (k, (&value, said)) in image.iter().zip(&said).enumerate() {
-            let expected = if value == 100.0 {
-                1.0
+        let image: Vec<_> = image.into_iter().map(|value| [value; CHANNELS]).collect();
+        for (p, value) in image.iter().enumerate() {
+            let value = value.map(f64::from);
+            let expected = if value[0] == 100.0 {
+                [1.0; CHANNELS]
             } else {
-                f64::from(value)
+                value
             };
-            assert_eq!(said.limit(f64::from(value)), expected, "pixel {k}");
+            let said = Plausible::around(&image, 8, p);
+            assert_eq!(said.limit(value), expected, "pixel {p}");
         }
     }
 
     #[test]
     fn limits_are_of_the_bright_neighbours() {
-        let image = [9.0, 1.0, 2.0, 3.0, 100.0, 8.0, 0.0, 7.0, 4.0];
-        let said = plausible(&image, 3)[4];
-        assert_eq!((said.bright, said.most), (7.5, 7.5 + 3.0 * (7.5 - 3.5)));
-        assert_eq!([said.limit(19.0), said.limit(20.0)], [19.0, 7.5]);
-        assert_eq!(plausible(&[1.0, 9.0], 2)[1].limit(9.0), 9.0);
+        let image = [9.0, 1.0, 2.0, 3.0, 100.0, 8.0, 0.0, 7.0, 4.0].map(|value| [value; CHANNELS]);
+        let said = Plausible::around(&image, 3, 4);
+        assert_eq!(
+            (said.bright[Y], said.most[Y]),
+            (7.5, 7.5 + 3.0 * (7.5 - 3.5))
+        );
+        assert_eq!(said.limit([19.0, 20.0, 1.0, 30.0]), [19.0, 7.5, 1.0, 7.5]);
+        assert_eq!(
+            Plausible::around(&image[..2], 2, 1).limit([1e9; CHANNELS])[0],
+            1e9
+        );
     }
 
     #[test]
     fn the_network_sorts() {
         // A network that sorts all sequences of 0 and 1 sorts everything.
         for bits in 0..256 {
-            let values = std::array::from_fn(|k| (bits >> k & 1) as f32);
+            let values = std::array::from_fn(|k| [(bits >> k & 1) as f32; CHANNELS]);
             assert!(sorted(values).is_sorted(), "{bits:b}");
         }
     }

@@ -93,7 +93,7 @@ fn image(
     let errors = pixels.iter().enumerate().flat_map(|(pixel, moments)| {
         let color = colors(truth(pixel));
         [0, 1, 2].map(|k| {
-            let error = moments.channel(k, samples).mean - color[k];
+            let error = moments.mean(samples)[k] - color[k];
             error * error / (color[k] * color[k] + floor)
         })
     });

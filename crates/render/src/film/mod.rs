@@ -181,7 +181,7 @@ impl Film {
         };
         let value = |sampled: Sampled<'_>| {
             let samples = sampled.samples as f64;
-            let variance = || sampled.moments.channel(channel, sampled.samples).variance;
+            let variance = || sampled.moments.statistics(sampled.samples).0.variance[channel];
             let value = match statistic {
                 Statistic::Count => samples,
                 Statistic::Variance => variance(),
@@ -226,7 +226,8 @@ impl Film {
 
 /// Mean red, green and blue.
 fn mean(sampled: &Sampled<'_>) -> [f64; 3] {
-    [0, 1, 2].map(|k| sampled.moments.channel(k, sampled.samples).mean)
+    let [red, green, blue, _] = sampled.moments.mean(sampled.samples);
+    [red, green, blue]
 }
 
 #[cfg(test)]

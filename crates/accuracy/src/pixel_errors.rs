@@ -1,0 +1,133 @@
+//! What each pixel says of its error, relative to the square of its mean: the parts of an estimate.
+
+use crate::error_estimate::{Replicate, Sampled};
+use crate::moments::{CHANNELS, MeanVariance, halves_of};
+use crate::plausible::Plausible;
+
+/// Of an image, by channel.
+#[derive(Clone, Debug)]
+pub(crate) struct PixelErrors {
+    /// By pixel: its samples' variance over their number.
+    pub(crate) contributions: Vec<[f32; CHANNELS]>,
+    /// By replicate.
+    pub(crate) replicates: Vec<Twice>,
+    /// Mean of the contributions.
+    pub(crate) plain: [f64; CHANNELS],
+    /// The same without the bias of noisy means.
+    pub(crate) jackknifed: [f64; CHANNELS],
+    /// Variance of the difference to the image's own error, for independent samples.
+    pub(crate) products: [f64; CHANNELS],
+}
+
+/// What a pixel that is sampled twice says.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Twice {
+    /// By the difference of the two sets.
+    pub(crate) between: [f64; CHANNELS],
+    /// By the variances within them, as if samples were independent.
+    pub(crate) within: [f64; CHANNELS],
+}
+
+impl PixelErrors {
+    pub(crate) fn of(width: usize, pixels: &[Sampled<'_>], replicates: &[Replicate<'_>]) -> Self {
+        let count = pixels.len() as f64;
+        let mut images = [(); 3].map(|()| Vec::with_capacity(pixels.len()));
+        let mut sum = [0.0; CHANNELS];
+        for pixel in pixels {
+            let (all, halves) = pixel.moments.statistics(pixel.samples);
+            for (image, mean) in images
+                .iter_mut()
+                .zip([all.mean, halves[0].mean, halves[1].mean])
+            {
+                image.push(mean.map(|mean| mean as f32));
+            }
+            for (sum, mean) in sum.iter_mut().zip(all.mean) {
+                *sum += mean;
+            }
+        }
+        let mean = sum.map(|sum| sum / count);
+        let color = (mean[0] + mean[1] + mean[2]) / 3.0;
+        let floor = [color, color, color, mean[3]].map(|mean| 1e-2 * mean * mean);
+        // One over the squared mean of a pixel, as far as that is plausible.
+        let scale = |image: &[[f32; CHANNELS]], p: usize, mean: [f64; CHANNELS]| {
+            let mean = Plausible::around(image, width, p).limit(mean);
+            let mut weight = [0.0; CHANNELS];
+            for k in 0..CHANNELS {
+                let squared = mean[k] * mean[k] + floor[k];
+                weight[k] = if squared > 0.0 { 1.0 / squared } else { 0.0 };
+            }
+            weight
+        };
+
+        let mut errors = Self {
+            contributions: Vec::with_capacity(pixels.len()),
+            replicates: Vec::with_capacity(replicates.len()),
+            plain: [0.0; CHANNELS],
+            jackknifed: [0.0; CHANNELS],
+            products: [0.0; CHANNELS],
+        };
+        for (p, pixel) in pixels.iter().enumerate() {
+            let one_over = 1.0 / pixel.samples as f64;
+            let statistics = pixel.moments.statistics(pixel.samples);
+            let (all, halves) = &statistics;
+            let weight = scale(&images[0], p, all.mean);
+            let of_halves = [0, 1].map(|half| scale(&images[1 + half], p, halves[half].mean));
+            let jackknifed = jackknifed(pixel.samples, &statistics, weight, of_halves);
+            let mut contribution = [0.0; CHANNELS];
+            for k in 0..CHANNELS {
+                let plain = all.variance[k] * one_over * weight[k];
+                let product = halves[0].variance[k] * halves[1].variance[k];
+                let squared_weight = (weight[k] * one_over) * (weight[k] * one_over);
+                errors.plain[k] += plain;
+                errors.products[k] += 2.0 * product * squared_weight;
+                errors.jackknifed[k] += jackknifed[k];
+                contribution[k] = plain as f32;
+            }
+            errors.contributions.push(contribution);
+        }
+        for k in 0..CHANNELS {
+            errors.plain[k] /= count;
+            errors.products[k] /= count * count;
+            // A larger correction is no longer one.
+            let [least, most] = [0.5 * errors.plain[k], 2.0 * errors.plain[k]];
+            errors.jackknifed[k] = (errors.jackknifed[k] / count).clamp(least, most);
+        }
+
+        errors.replicates.extend(replicates.iter().map(|replicate| {
+            let pair = [pixels[replicate.pixel], replicate.sampled];
+            let statistics = pair.map(|set| set.moments.statistics(set.samples));
+            let [first, second] = [&statistics[0].0.mean, &statistics[1].0.mean];
+            let middle = std::array::from_fn(|k| 0.5 * (first[k] + second[k]));
+            let weight = scale(&images[0], replicate.pixel, middle);
+            let within =
+                [0, 1].map(|k| jackknifed(pair[k].samples, &statistics[k], weight, [weight; 2]));
+            Twice {
+                between: std::array::from_fn(|k| 0.5 * (first[k] - second[k]).powi(2) * weight[k]),
+                within: std::array::from_fn(|k| 0.5 * (within[0][k] + within[1][k])),
+            }
+        }));
+        errors
+    }
+}
+
+/// Variance over the number of samples times a weight, by the jackknife of halves, each of which has its own weight.
+#[inline(always)]
+fn jackknifed(
+    samples: u64,
+    (all, halves): &(MeanVariance, [MeanVariance; 2]),
+    weight: [f64; CHANNELS],
+    of_halves: [[f64; CHANNELS]; 2],
+) -> [f64; CHANNELS] {
+    // Mean squared deviations, whose bias the jackknife takes out with that of the weights.
+    let biased = |count: u64| 1.0 - 1.0 / count.max(1) as f64;
+    let one_over = 1.0 / samples as f64;
+    let of_all = 2.0 * biased(samples) * one_over;
+    let of_half = halves_of(samples).map(|count| 0.5 * biased(count) * one_over);
+    let mut result = [0.0; CHANNELS];
+    for k in 0..CHANNELS {
+        let in_halves = of_half[0] * halves[0].variance[k] * of_halves[0][k]
+            + of_half[1] * halves[1].variance[k] * of_halves[1][k];
+        result[k] = of_all * all.variance[k] * weight[k] - in_halves;
+    }
+    result
+}
