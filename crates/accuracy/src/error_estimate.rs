@@ -76,7 +76,7 @@ pub struct ErrorEstimate {
 /// Below this many pixels that carry the error in effect, it has heavy tails.
 const FEWEST_CARRIERS: f64 = 400.0;
 /// Above this part of the estimate, the correction for noisy means is too large to trust what is left.
-const LARGEST_CORRECTION: f64 = 0.1;
+const LARGEST_CORRECTION: f64 = 0.07;
 /// Above this error, pixels are so noisy that what the correction leaves is large, too.
 const LARGEST_NOISE: f64 = 0.2;
 /// Fewest replicates from which a standard error can be had.
