@@ -3,6 +3,7 @@
 //! - Of one image: [`ErrorEstimate`], from running sums of its samples ([`PixelMoments`]), whoever made them; [`Convergence`] says how
 //!   the error falls, and what less of it costs.
 //! - Of two: all metrics together in [`comparison`]; [`flip()`] and [`relative_mse()`] alone.
+//! - Of many, by what they cost: [`sweep`] over numbers of samples, seeds and configurations.
 //! - Of repeated measurements: [`Estimate`] of a median, [`Jackknifed`] of what is made from several parts.
 //!
 //! Images are linear red, green and blue, row by row.
@@ -21,6 +22,7 @@ mod normal;
 mod pixel_errors;
 mod plausible;
 mod relative_mse;
+pub mod sweep;
 
 pub use convergence::{Convergence, Forecast, Measured};
 pub use distrust::Distrust;

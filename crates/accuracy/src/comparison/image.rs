@@ -52,12 +52,12 @@ impl<'a> Image<'a> {
     }
 
     /// All numbers, channel after channel of pixel after pixel.
-    pub(super) fn values(&self) -> impl Iterator<Item = f64> + Clone + use<'a> {
+    pub(crate) fn values(&self) -> impl Iterator<Item = f64> + Clone + use<'a> {
         self.pixels.as_flattened().iter().map(|&c| f64::from(c))
     }
 
     /// The variances of all numbers, where they are known.
-    pub(super) fn variances(&self) -> Option<impl Iterator<Item = f64> + Clone + use<'a>> {
+    pub(crate) fn variances(&self) -> Option<impl Iterator<Item = f64> + Clone + use<'a>> {
         let errors = self.standard_errors?.as_flattened();
         Some(errors.iter().map(|&error| f64::from(error).powi(2)))
     }

@@ -58,12 +58,12 @@ impl<'a> Pair<'a> {
     }
 
     /// Numbers of the reference and of the test, channel after channel of pixel after pixel.
-    pub(super) fn values(&self) -> impl Iterator<Item = (f64, f64)> + Clone + use<'a> {
+    pub(crate) fn values(&self) -> impl Iterator<Item = (f64, f64)> + Clone + use<'a> {
         self.reference.values().zip(self.test.values())
     }
 
     /// How many numbers an image has.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         3 * self.reference.pixels().len()
     }
 }
