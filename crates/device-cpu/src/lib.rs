@@ -22,7 +22,7 @@ pub use device::CpuDevice;
 pub use interpreter::Interpreter;
 pub use job::{SceneView, TileJob, TileRenderer};
 pub use lanes::LaneCount;
-pub use traversal::{AnyBvh, Traversal};
+pub use traversal::{AnyBvh, PreciseBvh, Traversal};
 
 /// What emitted code needs, under stable names.
 #[doc(hidden)]

@@ -5,8 +5,8 @@
 
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Culling, Hit, HitFilter, Hybrid, Kernel, MarkedHits, Ray,
-    Watertight, build, traversal_cost,
+    AllHits, BuildQuality, Bvh, Culling, Hit, HitFilter, Hybrid, Kernel, MarkedHits, Precision,
+    Ray, Watertight, build, traversal_cost,
 };
 use residual_render::scene_data::SceneData;
 
@@ -97,6 +97,14 @@ impl AnyBvh {
         }
     }
 
+    /// The same hierarchy, whose triangles are tested with another precision. Only those who ask for one have it compiled.
+    pub fn with_precision<P: Precision>(&self, precision: P) -> PreciseBvh<'_, P> {
+        PreciseBvh {
+            bvh: self,
+            precision,
+        }
+    }
+
     /// Bytes of its nodes and triangles.
     pub fn memory_bytes(&self) -> usize {
         match &self.tree {
@@ -137,16 +145,16 @@ macro_rules! with_tree {
 
 /// Evaluates an expression with the filter that the scene calls for.
 macro_rules! with_filter {
-    ($self:ident, $alpha:ident, $filter:ident => $call:expr) => {
+    ($scene:ident, $alpha:ident, $filter:ident => $call:expr) => {
         match $alpha {
             Some(alpha) => {
                 let $filter = &AlphaTested {
                     alpha,
-                    alpha_tested: &$self.alpha_tested,
+                    alpha_tested: &$scene.alpha_tested,
                 };
                 $call
             }
-            None if $self.sided => {
+            None if $scene.sided => {
                 let $filter = &MarkedHits;
                 $call
             }
@@ -158,22 +166,49 @@ macro_rules! with_filter {
     };
 }
 
-/// Streams are traced in packets as wide as the hierarchy, which fall back to single rays where neighbours disagree.
+/// Watertight, as images are rendered.
 impl Traversal for AnyBvh {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>) {
-        with_tree!(&self.tree, simd, kernel, bvh => with_filter!(self, alpha, filter =>
-            kernel.closest_hits(simd, Watertight, bvh, rays, hits, filter)));
+        self.with_precision(Watertight)
+            .closest_hits(rays, hits, alpha);
     }
 
     fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&AlphaFilter<'_>>) {
-        with_tree!(&self.tree, simd, kernel, bvh => with_filter!(self, alpha, filter =>
-            kernel.any_hits(simd, Watertight, bvh, rays, occluded, filter)));
+        self.with_precision(Watertight)
+            .any_hits(rays, occluded, alpha);
     }
 
     fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&AlphaFilter<'_>>) {
-        with_tree!(&self.tree, simd, _kernel, bvh => with_filter!(self, alpha, filter => {
+        self.with_precision(Watertight).visits(rays, visits, alpha);
+    }
+}
+
+/// A hierarchy with the precision of its test of triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct PreciseBvh<'a, P> {
+    bvh: &'a AnyBvh,
+    precision: P,
+}
+
+/// Streams are traced in packets as wide as the hierarchy, which fall back to single rays where neighbours disagree.
+impl<P: Precision> Traversal for PreciseBvh<'_, P> {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>) {
+        let (scene, precision) = (self.bvh, self.precision);
+        with_tree!(&scene.tree, simd, kernel, bvh => with_filter!(scene, alpha, filter =>
+            kernel.closest_hits(simd, precision, bvh, rays, hits, filter)));
+    }
+
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&AlphaFilter<'_>>) {
+        let (scene, precision) = (self.bvh, self.precision);
+        with_tree!(&scene.tree, simd, kernel, bvh => with_filter!(scene, alpha, filter =>
+            kernel.any_hits(simd, precision, bvh, rays, occluded, filter)));
+    }
+
+    fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&AlphaFilter<'_>>) {
+        let (scene, precision) = (self.bvh, self.precision);
+        with_tree!(&scene.tree, simd, _kernel, bvh => with_filter!(scene, alpha, filter => {
             for (ray, visits) in rays.iter().zip(visits) {
-                let cost = traversal_cost(simd, Watertight, bvh, ray, filter);
+                let cost = traversal_cost(simd, precision, bvh, ray, filter);
                 *visits = cost.nodes + cost.packets;
             }
         }));
