@@ -36,6 +36,8 @@ pub struct ReadImage {
     pub standard_errors: Option<Vec<[f32; 3]>>,
     /// What was in the file.
     pub encoding: Encoding,
+    /// What an EXR says of itself.
+    pub comment: Option<String>,
 }
 
 /// Reads an image; alpha is ignored.
@@ -98,6 +100,7 @@ fn read_other(bytes: &[u8], path: &Path) -> Result<ReadImage> {
         pixels,
         standard_errors: None,
         encoding,
+        comment: None,
     })
 }
 
@@ -138,6 +141,11 @@ fn read_exr(bytes: &[u8]) -> Result<ReadImage> {
         pixels: three(channels, size, names.map(str::to_owned))?,
         standard_errors,
         encoding: Encoding::Linear,
+        comment: image
+            .layer_data
+            .attributes
+            .comments
+            .map(|text| text.to_string()),
     })
 }
 

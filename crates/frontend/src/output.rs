@@ -163,7 +163,13 @@ fn png(film: &Film) -> Result<Vec<u8>> {
 }
 
 /// Codes for red, green and blue, row by row, as a PNG of this width and height.
-pub(crate) fn encode_png([width, height]: [usize; 2], codes: Vec<u8>) -> Result<Vec<u8>> {
+///
+/// # Errors
+/// If it cannot be encoded.
+///
+/// # Panics
+/// If there are not as many codes as the size says.
+pub fn encode_png([width, height]: [usize; 2], codes: Vec<u8>) -> Result<Vec<u8>> {
     let image = image::RgbImage::from_raw(width as u32, height as u32, codes)
         .expect("there are as many pixels as the size says");
     let mut bytes = Cursor::new(Vec::new());

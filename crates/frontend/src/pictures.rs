@@ -16,6 +16,8 @@ pub struct Picture {
     pub colors: Vec<[u8; 3]>,
     /// Channels of an EXR, each with one number for each pixel.
     pub channels: Vec<(&'static str, Vec<f32>)>,
+    /// What an EXR says of itself.
+    pub comment: Option<String>,
 }
 
 /// Writes a picture, whole or not at all.
@@ -36,7 +38,8 @@ fn encode_exr(picture: &Picture) -> Result<Vec<u8>> {
         .iter()
         .map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.clone())));
     let channels = AnyChannels::sort(channels.collect());
-    let attributes = LayerAttributes::named("");
+    let mut attributes = LayerAttributes::named("");
+    attributes.comments = picture.comment.as_deref().and_then(Text::new_or_none);
     let size = (picture.size[0], picture.size[1]);
     let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
     let mut bytes = Cursor::new(Vec::new());
@@ -55,6 +58,7 @@ mod tests {
             size: [2, 1],
             colors: vec![[1, 2, 3], [4, 5, 6]],
             channels: vec![("Y", vec![-0.5, f32::INFINITY])],
+            comment: Some("of a test".to_owned()),
         };
         let [png, exr] = ["a.png", "a.EXR"].map(|name| folder.path().join(name));
         write(&png, &picture).unwrap();
@@ -69,6 +73,7 @@ mod tests {
             (channel.name.to_string(), values),
             ("Y".to_owned(), vec![-0.5, f32::INFINITY])
         );
+        assert_eq!(crate::input::read(&exr).unwrap().comment, picture.comment);
         assert!(write(&folder.path().join("a.jpg"), &picture).is_err());
     }
 }

@@ -50,6 +50,7 @@ impl Crop {
             pixels: rows(&image.pixels),
             standard_errors: image.standard_errors.as_deref().map(rows),
             encoding: image.encoding,
+            comment: image.comment.clone(),
         })
     }
 }
@@ -74,6 +75,7 @@ mod tests {
             pixels: (0..12).map(|k| [k as f32; 3]).collect(),
             standard_errors: Some((0..12).map(|k| [-(k as f32); 3]).collect()),
             encoding: Encoding::Linear,
+            comment: None,
         };
         let cropped = Crop([1, 1, 2, 2]).of(image()).unwrap();
         assert_eq!(cropped.size, [2, 2]);

@@ -92,6 +92,7 @@ pub(super) fn write_all(
             size,
             colors,
             channels: vec![("R", channel(0)), ("G", channel(1)), ("B", channel(2))],
+            comment: None,
         };
         let what = format!(
             "difference over its standard error, of the channel farthest from 0, blue −{Z_RANGE} to red {Z_RANGE}"
@@ -106,6 +107,7 @@ fn of_numbers(size: [usize; 2], values: &[f64], color: impl Fn(f64) -> [u8; 3]) 
         size,
         colors: values.iter().map(|&value| color(value)).collect(),
         channels: vec![("Y", values.iter().map(|&value| value as f32).collect())],
+        comment: None,
     }
 }
 
