@@ -1,0 +1,323 @@
+//! The configurations that are compared: each is the renderer as it is, with one thing switched.
+//!
+//! A row of [`CONFIGURATIONS`] is all that it takes to measure another one. [`SWITCHES`] says which pairs of them are the two sides of
+//! a choice between time and truth.
+
+use residual_device_cpu::LaneCount;
+use residual_render::passes::RenderOptions;
+use residual_render::sampler::AnySampler;
+use residual_scenegen::plan::{Binding, PlanOptions};
+
+/// All that a configuration may change.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// How the scene is planned.
+    pub plan: PlanOptions,
+    /// How it is rendered.
+    pub render: RenderOptions,
+    /// How exactly rays meet triangles.
+    pub precision: TraversalPrecision,
+    /// Compiled or not.
+    pub tier: Tier,
+    /// Paths shaded at once.
+    pub lanes: LaneCount,
+    /// No sample is brighter than so many times the mean of the image.
+    pub clamp: Option<f64>,
+}
+
+impl Setup {
+    /// Whether it renders the same in the same way.
+    pub fn is_as(&self, other: &Self) -> bool {
+        format!("{self:?}") == format!("{other:?}")
+    }
+}
+
+/// The tests of triangles that `residual_bvh` has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TraversalPrecision {
+    /// Plain Möller and Trumbore in `f32`.
+    Fast,
+    /// Edges belong to both triangles.
+    Watertight,
+    /// Decisions as in exact arithmetic.
+    Exact,
+}
+
+/// How the renderer is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tier {
+    /// Without a compiler.
+    Interpreted,
+    /// Compiled for the scene.
+    Specialized,
+}
+
+/// What is switched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Nothing: what all others are compared with.
+    Baseline,
+    /// How exactly rays meet triangles.
+    Traversal,
+    /// Where random numbers come from.
+    Sampler,
+    /// How long paths may be.
+    Depth,
+    /// Bright samples cut off.
+    Clamping,
+    /// How the renderer is made from the scene.
+    Execution,
+}
+
+impl Axis {
+    /// All but the baseline.
+    pub const SWITCHED: [Self; 5] = [
+        Self::Traversal,
+        Self::Sampler,
+        Self::Depth,
+        Self::Clamping,
+        Self::Execution,
+    ];
+
+    /// What people call it.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Baseline => "As rendered by default",
+            Self::Traversal => "Precision of traversal",
+            Self::Sampler => "Sampler",
+            Self::Depth => "Length of paths",
+            Self::Clamping => "Clamping",
+            Self::Execution => "Specialised and interpreted, and lanes",
+        }
+    }
+}
+
+/// Whether a study of two minutes measures it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Every study does.
+    Quick,
+    /// Only the full one.
+    Full,
+}
+
+/// A way to render the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Configuration {
+    /// Its name, also of files.
+    pub name: &'static str,
+    /// What is switched.
+    pub axis: Axis,
+    /// What it is, for people.
+    pub what: &'static str,
+    /// In which studies.
+    pub extent: Extent,
+    /// What it changes.
+    pub change: fn(&mut Setup),
+}
+
+/// The name of the baseline.
+pub const BASELINE: &str = "default";
+
+const fn row(
+    name: &'static str,
+    axis: Axis,
+    what: &'static str,
+    extent: Extent,
+    change: fn(&mut Setup),
+) -> Configuration {
+    Configuration {
+        name,
+        axis,
+        what,
+        extent,
+        change,
+    }
+}
+
+/// All of them, the baseline first.
+pub const CONFIGURATIONS: &[Configuration] = {
+    use Axis::{Baseline, Clamping, Depth, Execution, Sampler, Traversal};
+    use Extent::{Full, Quick};
+    &[
+        row(
+            BASELINE,
+            Baseline,
+            "watertight, Sobol, 8 vertices, specialised",
+            Quick,
+            |_| {},
+        ),
+        row("fast", Traversal, "Möller–Trumbore in f32", Quick, |s| {
+            s.precision = TraversalPrecision::Fast;
+        }),
+        row(
+            "exact",
+            Traversal,
+            "decisions as in exact arithmetic",
+            Quick,
+            |s| {
+                s.precision = TraversalPrecision::Exact;
+            },
+        ),
+        row(
+            "independent",
+            Sampler,
+            "independent random numbers",
+            Quick,
+            |s| {
+                s.plan.sampler = AnySampler::Independent;
+            },
+        ),
+        row("depth-2", Depth, "2 vertices: direct light", Quick, |s| {
+            s.render.max_depth = 2
+        }),
+        row("depth-4", Depth, "4 vertices", Quick, |s| {
+            s.render.max_depth = 4
+        }),
+        row("depth-16", Depth, "16 vertices", Quick, |s| {
+            s.render.max_depth = 16
+        }),
+        row("depth-64", Depth, "64 vertices", Full, |s| {
+            s.render.max_depth = 64
+        }),
+        row(
+            "clamp-2",
+            Clamping,
+            "samples cut at 2 × the image's mean",
+            Quick,
+            |s| s.clamp = Some(2.0),
+        ),
+        row(
+            "clamp-10",
+            Clamping,
+            "samples cut at 10 × the image's mean",
+            Quick,
+            |s| s.clamp = Some(10.0),
+        ),
+        row(
+            "clamp-100",
+            Clamping,
+            "samples cut at 100 × the image's mean",
+            Full,
+            |s| s.clamp = Some(100.0),
+        ),
+        row("interpreted", Execution, "not compiled", Quick, |s| {
+            s.tier = Tier::Interpreted
+        }),
+        row(
+            "constants",
+            Execution,
+            "all numbers known to the compiler",
+            Full,
+            |s| {
+                s.plan.binding = Binding::Constants;
+            },
+        ),
+        row("lanes-1", Execution, "one path at a time", Full, |s| {
+            s.lanes = LaneCount::One
+        }),
+        row("lanes-4", Execution, "four lanes", Full, |s| {
+            s.lanes = LaneCount::Four
+        }),
+    ]
+};
+
+/// What a switch removes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Removes {
+    /// Rays that pass between two triangles with a common edge.
+    Misses(TraversalPrecision, TraversalPrecision),
+    /// A difference between what images converge to and the truth.
+    Bias,
+    /// Sums of samples that no longer grow.
+    Stagnation,
+}
+
+/// A choice between time and truth.
+#[derive(Clone, Copy, Debug)]
+pub struct Switch {
+    /// What people call it.
+    pub name: &'static str,
+    /// The configuration with it off.
+    pub without: &'static str,
+    /// The configuration with it on.
+    pub with: &'static str,
+    /// What it is good for.
+    pub removes: Removes,
+}
+
+const fn switch(
+    name: &'static str,
+    without: &'static str,
+    with: &'static str,
+    removes: Removes,
+) -> Switch {
+    Switch {
+        name,
+        without,
+        with,
+        removes,
+    }
+}
+
+/// All of them.
+pub const SWITCHES: &[Switch] = {
+    use Removes::{Bias, Misses, Stagnation};
+    use TraversalPrecision::{Exact, Fast, Watertight};
+    &[
+        switch(
+            "watertight triangles",
+            "fast",
+            BASELINE,
+            Misses(Fast, Watertight),
+        ),
+        switch(
+            "exact triangles",
+            BASELINE,
+            "exact",
+            Misses(Watertight, Exact),
+        ),
+        switch("sums in f64", BASELINE, BASELINE, Stagnation),
+        switch("4 vertices, not 2", "depth-2", "depth-4", Bias),
+        switch("8 vertices, not 4", "depth-4", BASELINE, Bias),
+        switch("16 vertices, not 8", BASELINE, "depth-16", Bias),
+        switch("64 vertices, not 16", "depth-16", "depth-64", Bias),
+        switch("no clamping at 2 × mean", "clamp-2", BASELINE, Bias),
+        switch("no clamping at 10 × mean", "clamp-10", BASELINE, Bias),
+        switch("no clamping at 100 × mean", "clamp-100", BASELINE, Bias),
+    ]
+};
+
+/// What people would look for and the engine cannot do, with the reason.
+pub const NOT_MEASURED: &[(&str, &str)] = &[
+    (
+        "pixel filters",
+        "pixels are boxes; there is no other filter",
+    ),
+    (
+        "whole renders in f64",
+        "formulas run in f64 in tests only, no device renders with it",
+    ),
+    (
+        "CPU against wgpu",
+        "samples have the same bits where an adapter's arithmetic is exact, and its time is another device's",
+    ),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn switches_are_between_configurations() {
+        for switch in SWITCHES {
+            for name in [switch.without, switch.with] {
+                let named = CONFIGURATIONS.iter().filter(|c| c.name == name);
+                assert_eq!(named.count(), 1, "{name}");
+            }
+        }
+        assert_eq!(CONFIGURATIONS[0].axis, Axis::Baseline);
+        let switched = |c: &Configuration| Axis::SWITCHED.contains(&c.axis);
+        assert!(CONFIGURATIONS[1..].iter().all(switched));
+    }
+}

@@ -1,0 +1,5 @@
+//! `cargo xtask accuracy` has cargo build and run this.
+
+fn main() -> std::process::ExitCode {
+    residual_study::main()
+}

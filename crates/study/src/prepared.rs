@@ -1,0 +1,199 @@
+//! Configurations made ready to render.
+
+use std::rc::Rc;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use residual_accuracy::luminance;
+use residual_bvh::{Exact, Fast};
+use residual_device_cpu::plugin::LoadedRenderer;
+use residual_device_cpu::{
+    AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileJob, TileRenderer, Traversal,
+};
+use residual_driver::compile;
+use residual_frontend::{hierarchy_quality, process_time};
+use residual_render::film::{Film, SampleSet, TILE_SIZE, TileRect};
+use residual_render::layer::Layers;
+use residual_render::passes::{Counters, MAX_PASS, Pass, RenderOptions};
+use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::plan::{Plan, plan};
+
+use crate::configuration::{Setup, Tier, TraversalPrecision};
+
+/// A scene in one configuration, ready to be rendered.
+pub struct Prepared {
+    plan: Plan,
+    bvh: Rc<AnyBvh>,
+    precision: TraversalPrecision,
+    renderer: Box<dyn TileRenderer>,
+    options: RenderOptions,
+}
+
+/// Samples that are cut off where they are brighter than so much.
+struct Clamped {
+    renderer: Box<dyn TileRenderer>,
+    /// Luminance.
+    most: f64,
+}
+
+impl TileRenderer for Clamped {
+    fn layers(&self) -> Layers {
+        self.renderer.layers()
+    }
+
+    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, samples: &mut [f32]) -> Counters {
+        let counters = self.renderer.render_tile(scene, job, samples);
+        for sample in samples.chunks_exact_mut(self.layers().stride()) {
+            let brightness = luminance([sample[0], sample[1], sample[2]]);
+            if brightness > self.most {
+                let factor = (self.most / brightness) as f32;
+                sample[..3].iter_mut().for_each(|value| *value *= factor);
+            }
+        }
+        counters
+    }
+}
+
+/// Makes configurations ready, and shares hierarchies among those with the same triangles.
+pub struct Preparation<'a> {
+    scene: &'a SceneDesc,
+    built: Option<(Vec<[f32; 3]>, Rc<AnyBvh>)>,
+}
+
+impl<'a> Preparation<'a> {
+    /// For configurations of this scene.
+    pub fn new(scene: &'a SceneDesc) -> Self {
+        Self { scene, built: None }
+    }
+
+    /// Plans, builds, and compiles if the configuration is compiled. `mean` is the mean luminance of the image, to which clamping is
+    /// relative.
+    ///
+    /// # Errors
+    /// If the scene cannot be planned, or its renderer not be compiled.
+    pub fn prepare(&mut self, setup: &Setup, mean: f64) -> Result<Prepared> {
+        let plan = plan(self.scene, &setup.plan)?;
+        let renderer: Box<dyn TileRenderer> = match setup.tier {
+            Tier::Interpreted => Box::new(Interpreter::new(plan.structure.clone(), setup.lanes)),
+            Tier::Specialized => {
+                let compiled: LoadedRenderer = compile(&plan, setup.lanes)
+                    .context("--tier interpreted renders without a compiler")?;
+                Box::new(compiled)
+            }
+        };
+        let renderer = match setup.clamp {
+            Some(times) => Box::new(Clamped {
+                renderer,
+                most: times * mean,
+            }),
+            None => renderer,
+        };
+        Ok(Prepared {
+            bvh: self.hierarchy(&plan),
+            plan,
+            precision: setup.precision,
+            renderer,
+            options: setup.render.clone(),
+        })
+    }
+
+    fn hierarchy(&mut self, plan: &Plan) -> Rc<AnyBvh> {
+        let positions = plan.data.positions();
+        if let Some((of, bvh)) = &self.built
+            && *of == positions
+        {
+            return Rc::clone(bvh);
+        }
+        let quality = hierarchy_quality(plan.data.triangle_count());
+        let bvh = Rc::new(AnyBvh::build(&plan.data, LaneCount::native(), quality));
+        self.built = Some((positions, Rc::clone(&bvh)));
+        bvh
+    }
+}
+
+impl Prepared {
+    /// What was planned.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Renders with this seed, and shows what there is after each of these ascending numbers of samples.
+    pub fn render(
+        &self,
+        device: &CpuDevice,
+        seed: u32,
+        counts: &[u32],
+        mut look: impl FnMut(SoFar<'_>),
+    ) {
+        let options = RenderOptions {
+            seed,
+            ..self.options.clone()
+        };
+        let [width, height] = options.size;
+        let mut film = Film::new(width, height, TILE_SIZE, Layers::NONE);
+        let (fast, exact);
+        let traversal: &(dyn Traversal + Sync) = match self.precision {
+            TraversalPrecision::Watertight => &*self.bvh,
+            TraversalPrecision::Fast => {
+                fast = self.bvh.with_precision(Fast);
+                &fast
+            }
+            TraversalPrecision::Exact => {
+                exact = self.bvh.with_precision(Exact);
+                &exact
+            }
+        };
+        let view = SceneView {
+            buffers: self.plan.data.buffers(),
+            traversal,
+        };
+        let (mut done, mut cpu) = (0, Duration::ZERO);
+        for &samples in counts {
+            let before = process_time();
+            while done < samples {
+                let count = MAX_PASS.min(samples - done);
+                let pass = Pass { first: done, count };
+                device.pass(&*self.renderer, &view, &options, &mut film, pass);
+                done += count;
+            }
+            cpu += process_time() - before;
+            look(SoFar {
+                samples,
+                seconds: cpu.as_secs_f64(),
+                film: &film,
+            });
+        }
+    }
+
+    /// Samples of one tile in the middle of the image, `count` of each pixel: red, green and blue, sample by sample.
+    pub fn samples(&self, count: u32) -> Vec<[f32; 3]> {
+        let [width, height] = self.options.size;
+        let rect = TileRect {
+            x: width / 2,
+            y: height / 2,
+            width: (width - width / 2).min(16),
+            height: (height - height / 2).min(16),
+        };
+        let view = SceneView {
+            buffers: self.plan.data.buffers(),
+            traversal: &*self.bvh,
+        };
+        let pass = Pass { first: 0, count };
+        let set = SampleSet::First;
+        let job = TileJob::new(rect, set, pass, self.options.tracer(set));
+        let mut samples = vec![0.0; rect.area() * Layers::RADIANCE * count as usize];
+        self.renderer.render_tile(&view, &job, &mut samples);
+        samples.as_chunks().0.to_vec()
+    }
+}
+
+/// What a render has reached.
+#[derive(Clone, Copy, Debug)]
+pub struct SoFar<'a> {
+    /// Samples of a pixel.
+    pub samples: u32,
+    /// CPU seconds of rendering.
+    pub seconds: f64,
+    /// The image.
+    pub film: &'a Film,
+}

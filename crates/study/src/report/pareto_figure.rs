@@ -1,0 +1,84 @@
+//! All configurations after all numbers of samples: those that no other beats in both time and error, and the rest in grey.
+
+use super::chart::{Anchor, Drawing, Scale};
+use super::numbers;
+use crate::findings::{Findings, Point};
+use residual_frontend::precision::percent;
+
+const SIZE: [f64; 2] = [860.0, 460.0];
+const LEFT: f64 = 58.0;
+const RIGHT: f64 = 840.0;
+const TOP: f64 = 34.0;
+const BOTTOM: f64 = 410.0;
+
+/// The chart.
+pub(super) fn figure(findings: &Findings) -> Drawing {
+    let mut drawing = Drawing::new(SIZE[0], SIZE[1]);
+    let points = &findings.points;
+    let x = Scale::of(points.iter().map(|p| p.seconds), LEFT, RIGHT);
+    let y = Scale::of(points.iter().map(|p| p.error), BOTTOM, TOP);
+    drawing.text(
+        [LEFT, 20.0],
+        Anchor::Start,
+        "title",
+        "What no other configuration beats",
+    );
+    drawing.horizontal(&x, TOP, BOTTOM);
+    drawing.vertical(&y, LEFT, RIGHT);
+    drawing.line(&[[LEFT, TOP], [LEFT, BOTTOM], [RIGHT, BOTTOM]], "axis");
+    drawing.text(
+        [0.5 * (LEFT + RIGHT), BOTTOM + 36.0],
+        Anchor::Middle,
+        "note",
+        "CPU seconds",
+    );
+    drawing.text(
+        [RIGHT, 20.0],
+        Anchor::End,
+        "note",
+        "relative mean squared error",
+    );
+    let name = |point: &Point| {
+        findings.configurations[point.configuration]
+            .configuration
+            .name
+    };
+    let place = |point: &Point| [x.at(point.seconds), y.at(point.error)];
+    let tip = |point: &Point| {
+        let (time, error) = (numbers::time(point.seconds), percent(point.error));
+        format!(
+            "{}, {} samples: {time}, error {error}",
+            name(point),
+            point.samples
+        )
+    };
+    for (index, point) in points.iter().enumerate() {
+        if !findings.front.contains(&index) {
+            drawing.circle(place(point), 3.2, "dot", &tip(point));
+        }
+    }
+    let front: Vec<&Point> = findings.front.iter().map(|&index| &points[index]).collect();
+    let places: Vec<_> = front.iter().map(|point| place(point)).collect();
+    drawing.line(&places, "front");
+    for point in &front {
+        drawing.circle(place(point), 4.2, "best", &tip(point));
+    }
+    // A name where the front goes over to another configuration; at the knee there is another label.
+    let mut last = None;
+    for (&index, point) in findings.front.iter().zip(&front) {
+        if last != Some(point.configuration) && findings.knee != Some(index) {
+            let [x, y] = place(point);
+            let text = format!("{}, {}", name(point), point.samples);
+            drawing.text([x + 8.0, y - 6.0], Anchor::Start, "note", &text);
+        }
+        last = Some(point.configuration);
+    }
+    if let Some(index) = findings.knee {
+        let point = &points[index];
+        let [x, y] = place(point);
+        drawing.circle([x, y], 8.0, "ring", &tip(point));
+        let text = format!("knee: {}, {} samples", name(point), point.samples);
+        drawing.text([x + 14.0, y - 8.0], Anchor::Start, "name", &text);
+    }
+    drawing
+}
