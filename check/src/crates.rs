@@ -71,7 +71,19 @@ pub const TABLE: &[Row] = &[
             "residual-wgsl",
         ],
     ),
-    // Not the benchmarks: what only they need is not built for the command line.
+    row(
+        "residual-study",
+        &[
+            "residual-bvh",
+            "residual-device-cpu",
+            "residual-driver",
+            "residual-frontend",
+            "residual-accuracy",
+            "residual-render",
+            "residual-scenegen",
+        ],
+    ),
+    // Not the benchmarks and the study: what only they need is not built for the command line.
     row(
         "xtask",
         &[

@@ -40,6 +40,9 @@ pub(crate) enum Command {
     Cache(CacheCommand),
     /// Compare two images
     Compare(CompareArgs),
+    /// Measure what accuracy costs in time, and write a report
+    #[command(disable_help_flag = true)]
+    Accuracy(PassedOn),
     /// List the GPUs and what their arithmetic is like
     Adapters,
     /// Measure speed

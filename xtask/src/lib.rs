@@ -48,6 +48,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Adapters => render_wgpu::adapters()?,
         #[cfg(not(feature = "wgpu"))]
         Command::Adapters => return delegate::all_to_package("xtask-wgpu"),
+        Command::Accuracy(passed_on) => return delegate::to_package("residual-study", &passed_on),
         Command::Bench(passed_on) => return delegate::to_package("residual-benches", &passed_on),
         Command::Check(passed_on) => return delegate::to_package("residual-check", &passed_on),
     }

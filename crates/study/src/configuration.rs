@@ -87,7 +87,7 @@ impl Axis {
             Self::Sampler => "Sampler",
             Self::Depth => "Length of paths",
             Self::Clamping => "Clamping",
-            Self::Execution => "Specialised and interpreted, and lanes",
+            Self::Execution => "Specialisation and lanes",
         }
     }
 }

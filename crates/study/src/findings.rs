@@ -14,6 +14,9 @@ use crate::reference::Reference;
 /// 1 %, as a relative mean squared error.
 pub const ONE_PERCENT: f64 = 1e-4;
 
+/// Points of the front err less by this part than all that are faster: configurations with the same images differ in time only.
+const LEAST_GAIN: f64 = 0.01;
+
 /// All that was measured.
 #[derive(Clone, Debug)]
 pub struct Study {
@@ -230,7 +233,7 @@ impl Findings {
             .collect::<Result<Vec<_>>>()?;
         let points = points(&configurations);
         let places: Vec<[f64; 2]> = points.iter().map(|p| [p.seconds, p.error]).collect();
-        let front = pareto_front(&places);
+        let front = pareto_front(&places, LEAST_GAIN);
         Ok(Self {
             ladder: ladder(study, &configurations),
             knee: knee(&places, &front),

@@ -36,7 +36,9 @@ pub(super) fn inline(drawing: &Drawing, label: &str) -> String {
 
 /// Text that may stand between tags and in attributes.
 pub(super) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
+    // What belongs together stays on one line.
+    text.replace(" %", "\u{a0}%")
+        .replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
         .replace('"', "&quot;")
@@ -208,6 +210,36 @@ impl Drawing {
     }
 }
 
+/// Labels that have a place, so that no other is put over them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Labels {
+    /// Left, top, right and bottom.
+    boxes: Vec<[f64; 4]>,
+}
+
+/// Width of a letter and height of a line of labels.
+const LETTER: [f64; 2] = [6.4, 14.0];
+
+impl Labels {
+    /// Whether there is room for text that ends or begins here; if so, it is taken.
+    pub(super) fn take(&mut self, [x, y]: [f64; 2], anchor: Anchor, text: &str) -> bool {
+        let width = LETTER[0] * text.chars().count() as f64;
+        let left = match anchor {
+            Anchor::Start => x,
+            Anchor::Middle => x - 0.5 * width,
+            Anchor::End => x - width,
+        };
+        let new = [left, y - LETTER[1], left + width, y];
+        let overlaps =
+            |b: &[f64; 4]| new[0] < b[2] && b[0] < new[2] && new[1] < b[3] && b[1] < new[3];
+        let free = !self.boxes.iter().any(overlaps);
+        if free {
+            self.boxes.push(new);
+        }
+        free
+    }
+}
+
 /// Moves heights apart that are closer than `distance`, as little as their order allows, and keeps them above `bottom`.
 pub(super) fn spread(heights: &[f64], distance: f64, bottom: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..heights.len()).collect();
@@ -248,6 +280,15 @@ mod tests {
     fn labels_do_not_overlap() {
         assert_eq!(spread(&[10.0, 12.0, 50.0], 10.0, 100.0), [10.0, 20.0, 50.0]);
         assert_eq!(spread(&[95.0, 99.0], 10.0, 100.0), [90.0, 100.0]);
+    }
+
+    #[test]
+    fn labels_take_their_room() {
+        let mut labels = Labels::default();
+        assert!(labels.take([100.0, 50.0], Anchor::Start, "ten letters"));
+        assert!(!labels.take([120.0, 55.0], Anchor::Start, "x"));
+        assert!(labels.take([100.0, 50.0], Anchor::End, "before"));
+        assert!(labels.take([120.0, 70.0], Anchor::Middle, "below"));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::findings::{Finding, Findings, Level, ONE_PERCENT};
 const SIZE: [f64; 2] = [640.0, 400.0];
 const LEFT: f64 = 58.0;
 /// Labels stand to the right of it.
-const RIGHT: f64 = 452.0;
+const RIGHT: f64 = 496.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 350.0;
 /// Colours of lines.
@@ -98,7 +98,7 @@ fn chart(title: &str, shown: &[&Finding]) -> Drawing {
             points.last().map_or(BOTTOM, |[_, y]| *y)
         })
         .collect();
-    let places = spread(&ends, 34.0, BOTTOM - 10.0);
+    let places = spread(&ends, 45.0, BOTTOM - 20.0);
     for ((index, finding), height) in shown.iter().enumerate().zip(places) {
         let color = format!("s{}", index % COLORS);
         let place = |dy: f64| [RIGHT + 10.0, height + dy];
@@ -109,11 +109,12 @@ fn chart(title: &str, shown: &[&Finding]) -> Drawing {
             finding.configuration.name,
         );
         let slope = format!("slope {}", numbers::jackknifed(finding.slope));
-        let text = match finding.relative_bias() {
-            Level::Seen { value, .. } => format!("{slope}, bias {}", numbers::percent(value)),
-            Level::Below(_) => slope,
+        drawing.text(place(13.0), Anchor::Start, "note", &slope);
+        let bias = match finding.relative_bias() {
+            Level::Seen { value, .. } => format!("bias {}", numbers::percent(value)),
+            Level::Below(bound) => format!("bias below {}", numbers::percent(bound)),
         };
-        drawing.text(place(13.0), Anchor::Start, "note", &text);
+        drawing.text(place(26.0), Anchor::Start, "note", &bias);
     }
     drawing
 }

@@ -87,7 +87,10 @@ fn answer(study: &Study, findings: &Findings) -> String {
             ),
             None => "An error of 1 % is never reached: the bias is above it.".to_owned(),
         },
-        format!("Its bias is {}.", numbers::bias(baseline.relative_bias())),
+        format!(
+            "The bias of the default is {}: what no number of samples removes.",
+            numbers::bias(baseline.relative_bias())
+        ),
     ];
     if let Some(index) = findings.knee {
         let point = &findings.points[index];

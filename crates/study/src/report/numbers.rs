@@ -51,7 +51,9 @@ pub(super) fn percent(part: f64) -> String {
 
 /// A change in per cent, with its sign.
 pub(super) fn change(part: f64) -> String {
-    format!("{:+.1} %", 100.0 * part).replace('-', "−")
+    let percent = 100.0 * part;
+    let digits = if percent.abs() < 0.1 { 3 } else { 1 };
+    format!("{percent:+.digits$} %").replace('-', "−")
 }
 
 /// A number with its interval.

@@ -1,6 +1,6 @@
 //! All configurations after all numbers of samples: those that no other beats in both time and error, and the rest in grey.
 
-use super::chart::{Anchor, Drawing, Scale};
+use super::chart::{Anchor, Drawing, Labels, Scale};
 use super::numbers;
 use crate::findings::{Findings, Point};
 use residual_frontend::precision::percent;
@@ -63,22 +63,33 @@ pub(super) fn figure(findings: &Findings) -> Drawing {
     for point in &front {
         drawing.circle(place(point), 4.2, "best", &tip(point));
     }
-    // A name where the front goes over to another configuration; at the knee there is another label.
-    let mut last = None;
-    for (&index, point) in findings.front.iter().zip(&front) {
-        if last != Some(point.configuration) && findings.knee != Some(index) {
-            let [x, y] = place(point);
-            let text = format!("{}, {}", name(point), point.samples);
-            drawing.text([x + 8.0, y - 6.0], Anchor::Start, "note", &text);
-        }
-        last = Some(point.configuration);
-    }
+    // The knee comes first, then names where the front goes over to another configuration, as far as there is room.
+    let mut labels = Labels::default();
     if let Some(index) = findings.knee {
         let point = &points[index];
-        let [x, y] = place(point);
-        drawing.circle([x, y], 8.0, "ring", &tip(point));
+        drawing.circle(place(point), 8.0, "ring", &tip(point));
         let text = format!("knee: {}, {} samples", name(point), point.samples);
-        drawing.text([x + 14.0, y - 8.0], Anchor::Start, "name", &text);
+        let at = beside(place(point), &text);
+        labels.take(at.0, at.1, &text);
+        drawing.text(at.0, at.1, "name", &text);
+    }
+    let mut last = None;
+    for (&index, point) in findings.front.iter().zip(&front) {
+        let text = format!("{}, {}", name(point), point.samples);
+        let (at, anchor) = beside(place(point), &text);
+        let is_new = last != Some(point.configuration) && findings.knee != Some(index);
+        if is_new && labels.take(at, anchor, &text) {
+            drawing.text(at, anchor, "note", &text);
+            last = Some(point.configuration);
+        }
     }
     drawing
+}
+
+/// Above the front on its right side, unless that is beyond the chart.
+fn beside([x, y]: [f64; 2], text: &str) -> ([f64; 2], Anchor) {
+    let fits = x + 8.0 * text.len() as f64 <= RIGHT;
+    let anchor = if fits { Anchor::Start } else { Anchor::End };
+    let dx = if fits { 10.0 } else { -10.0 };
+    ([x + dx, y - if fits { 6.0 } else { -16.0 }], anchor)
 }
