@@ -6,7 +6,8 @@
 use residual_device_cpu::LaneCount;
 use residual_render::passes::RenderOptions;
 use residual_render::sampler::AnySampler;
-use residual_scenegen::plan::{Binding, PlanOptions};
+use residual_render::tracer::{AnyMis, TracerNode};
+use residual_scenegen::plan::{Binding, LightPicks, PlanOptions};
 
 /// All that a configuration may change.
 #[derive(Clone, Debug)]
@@ -26,6 +27,11 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// Weighs light in this way.
+    pub fn mis(&mut self, mis: AnyMis) {
+        self.plan.tracer = TracerNode::Path(mis);
+    }
+
     /// Whether it renders the same in the same way.
     pub fn is_as(&self, other: &Self) -> bool {
         format!("{self:?}") == format!("{other:?}")
@@ -61,6 +67,12 @@ pub enum Axis {
     Traversal,
     /// Where random numbers come from.
     Sampler,
+    /// How light is weighed that lights and BSDFs find.
+    Mis,
+    /// How often each light is picked.
+    LightPicks,
+    /// Where paths may end by chance.
+    Roulette,
     /// How long paths may be.
     Depth,
     /// Bright samples cut off.
@@ -71,9 +83,12 @@ pub enum Axis {
 
 impl Axis {
     /// All but the baseline.
-    pub const SWITCHED: [Self; 5] = [
+    pub const SWITCHED: [Self; 8] = [
         Self::Traversal,
         Self::Sampler,
+        Self::Mis,
+        Self::LightPicks,
+        Self::Roulette,
         Self::Depth,
         Self::Clamping,
         Self::Execution,
@@ -85,9 +100,26 @@ impl Axis {
             Self::Baseline => "As rendered by default",
             Self::Traversal => "Precision of traversal",
             Self::Sampler => "Sampler",
+            Self::Mis => "Multiple importance sampling",
+            Self::LightPicks => "Light sampling",
+            Self::Roulette => "Russian roulette",
             Self::Depth => "Length of paths",
             Self::Clamping => "Clamping",
             Self::Execution => "Specialisation and lanes",
+        }
+    }
+
+    /// Whether images converge to the same as the baseline's, so that they have its bias.
+    pub fn keeps_limit(self) -> bool {
+        match self {
+            Self::Baseline
+            | Self::Traversal
+            | Self::Sampler
+            | Self::Mis
+            | Self::LightPicks
+            | Self::Roulette
+            | Self::Execution => true,
+            Self::Depth | Self::Clamping => false,
         }
     }
 }
@@ -136,89 +168,35 @@ const fn row(
 }
 
 /// All of them, the baseline first.
+#[rustfmt::skip]
 pub const CONFIGURATIONS: &[Configuration] = {
-    use Axis::{Baseline, Clamping, Depth, Execution, Sampler, Traversal};
+    use Axis::{
+        Baseline, Clamping, Depth, Execution, LightPicks as Picks, Mis, Roulette, Sampler, Traversal,
+    };
     use Extent::{Full, Quick};
     &[
-        row(
-            BASELINE,
-            Baseline,
-            "watertight, Sobol, 8 vertices, specialised",
-            Quick,
-            |_| {},
-        ),
-        row("fast", Traversal, "Möller–Trumbore in f32", Quick, |s| {
-            s.precision = TraversalPrecision::Fast;
-        }),
-        row(
-            "exact",
-            Traversal,
-            "decisions as in exact arithmetic",
-            Quick,
-            |s| {
-                s.precision = TraversalPrecision::Exact;
-            },
-        ),
-        row(
-            "independent",
-            Sampler,
-            "independent random numbers",
-            Quick,
-            |s| {
-                s.plan.sampler = AnySampler::Independent;
-            },
-        ),
-        row("depth-2", Depth, "2 vertices: direct light", Quick, |s| {
-            s.render.max_depth = 2
-        }),
-        row("depth-4", Depth, "4 vertices", Quick, |s| {
-            s.render.max_depth = 4
-        }),
-        row("depth-16", Depth, "16 vertices", Quick, |s| {
-            s.render.max_depth = 16
-        }),
-        row("depth-64", Depth, "64 vertices", Full, |s| {
-            s.render.max_depth = 64
-        }),
-        row(
-            "clamp-2",
-            Clamping,
-            "samples cut at 2 × the image's mean",
-            Quick,
-            |s| s.clamp = Some(2.0),
-        ),
-        row(
-            "clamp-10",
-            Clamping,
-            "samples cut at 10 × the image's mean",
-            Quick,
-            |s| s.clamp = Some(10.0),
-        ),
-        row(
-            "clamp-100",
-            Clamping,
-            "samples cut at 100 × the image's mean",
-            Full,
-            |s| s.clamp = Some(100.0),
-        ),
-        row("interpreted", Execution, "not compiled", Quick, |s| {
-            s.tier = Tier::Interpreted
-        }),
-        row(
-            "constants",
-            Execution,
-            "all numbers known to the compiler",
-            Full,
-            |s| {
-                s.plan.binding = Binding::Constants;
-            },
-        ),
-        row("lanes-1", Execution, "one path at a time", Full, |s| {
-            s.lanes = LaneCount::One
-        }),
-        row("lanes-4", Execution, "four lanes", Full, |s| {
-            s.lanes = LaneCount::Four
-        }),
+        row(BASELINE, Baseline, "watertight, Sobol, 8 vertices", Quick, |_| {}),
+        row("fast", Traversal, "Möller–Trumbore in f32", Quick, |s| s.precision = TraversalPrecision::Fast),
+        row("exact", Traversal, "decisions as in exact arithmetic", Quick, |s| s.precision = TraversalPrecision::Exact),
+        row("independent", Sampler, "independent random numbers", Quick, |s| s.plan.sampler = AnySampler::Independent),
+        row("balance", Mis, "balance heuristic, not power", Full, |s| s.mis(AnyMis::BalanceHeuristic)),
+        row("lights-only", Mis, "lights are sampled, not found", Quick, |s| s.mis(AnyMis::LightsOnly)),
+        row("bsdf-only", Mis, "lights are found, not sampled", Quick, |s| s.mis(AnyMis::BsdfOnly)),
+        row("by-power", Picks, "lights are picked by power", Quick, |s| s.plan.light_picks = LightPicks::Power),
+        row("evenly", Picks, "each light as often as any other", Full, |s| s.plan.light_picks = LightPicks::Uniform),
+        row("roulette-2", Roulette, "from the 2nd vertex, not the 5th", Full, |s| s.render.roulette_from = 2),
+        row("no-roulette", Roulette, "all paths go on to their 8th vertex", Quick, |s| s.render.roulette_from = u32::MAX),
+        row("depth-2", Depth, "2 vertices: direct light", Quick, |s| s.render.max_depth = 2),
+        row("depth-4", Depth, "4 vertices", Quick, |s| s.render.max_depth = 4),
+        row("depth-16", Depth, "16 vertices", Quick, |s| s.render.max_depth = 16),
+        row("depth-64", Depth, "64 vertices", Full, |s| s.render.max_depth = 64),
+        row("clamp-2", Clamping, "samples cut at 2 × the mean", Full, |s| s.clamp = Some(2.0)),
+        row("clamp-10", Clamping, "samples cut at 10 × the mean", Quick, |s| s.clamp = Some(10.0)),
+        row("clamp-100", Clamping, "samples cut at 100 × the mean", Full, |s| s.clamp = Some(100.0)),
+        row("interpreted", Execution, "not compiled", Quick, |s| s.tier = Tier::Interpreted),
+        row("constants", Execution, "all numbers known to the compiler", Full, |s| s.plan.binding = Binding::Constants),
+        row("lanes-1", Execution, "one path at a time", Full, |s| s.lanes = LaneCount::One),
+        row("lanes-4", Execution, "four lanes", Full, |s| s.lanes = LaneCount::Four),
     ]
 };
 

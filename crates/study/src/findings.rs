@@ -119,7 +119,8 @@ pub struct Finding {
     pub series: Series,
     /// Relative squared bias.
     pub bias: Jackknifed,
-    /// The floor of its error: the squared bias where that is certain, else 0.
+    /// The floor of its error: the squared bias where that is certain, else 0. Where the limit is the baseline's by construction, it is
+    /// the baseline's: else some would seem to have none because they are noisier.
     pub floor: f64,
     /// Power of the number of samples with which the error falls.
     pub slope: Option<Jackknifed>,
@@ -226,10 +227,11 @@ impl Findings {
     /// If runs do not fit each other, or images are not finite.
     pub fn of(study: &Study) -> Result<Self> {
         let baseline = &study.measured[0];
+        let shared_floor = floor(bias(baseline, &study.reference)?);
         let configurations = study
             .measured
             .iter()
-            .map(|measured| finding(measured, baseline, &study.reference))
+            .map(|measured| finding(measured, baseline, &study.reference, shared_floor))
             .collect::<Result<Vec<_>>>()?;
         let points = points(&configurations);
         let places: Vec<[f64; 2]> = points.iter().map(|p| [p.seconds, p.error]).collect();
@@ -244,19 +246,38 @@ impl Findings {
     }
 }
 
-fn finding(measured: &Measured, baseline: &Measured, reference: &Reference) -> Result<Finding> {
-    let series = Series::new(measured.runs.clone())?;
+/// The relative squared bias of the runs.
+fn bias(measured: &Measured, reference: &Reference) -> Result<Jackknifed> {
     let width = reference.size[0];
     let pairs = measured
         .images
         .iter()
         .map(|image| Pair::new(reference.as_image(), Image::new(image, width)))
         .collect::<Result<Vec<_>, _>>()?;
-    let bias = squared_bias(&pairs)?;
-    let floor = if bias.value > bias.ci95 {
+    Ok(squared_bias(&pairs)?)
+}
+
+/// A squared bias where it is certain, else 0.
+fn floor(bias: Jackknifed) -> f64 {
+    if bias.value > bias.ci95 {
         bias.value
     } else {
         0.0
+    }
+}
+
+fn finding(
+    measured: &Measured,
+    baseline: &Measured,
+    reference: &Reference,
+    shared_floor: f64,
+) -> Result<Finding> {
+    let series = Series::new(measured.runs.clone())?;
+    let bias = bias(measured, reference)?;
+    let floor = if measured.configuration.axis.keeps_limit() {
+        shared_floor
+    } else {
+        floor(bias)
     };
     let ratios = |of: &dyn Fn(&Measurement) -> f64| {
         let runs = measured.runs.iter().zip(&baseline.runs);

@@ -12,6 +12,7 @@ use residual_device_cpu::CpuDevice;
 use residual_frontend::input;
 use residual_frontend::pictures::{self, Picture};
 use residual_render::sampler::AnySampler;
+use residual_render::tracer::AnyMis;
 use serde_json::{Value, json};
 
 use crate::configuration::Setup;
@@ -29,12 +30,15 @@ pub struct Strategy {
 /// All of them.
 pub const STRATEGIES: &[Strategy] = &[
     Strategy {
-        name: "sobol",
+        name: "Sobol points, lights sampled and found",
         change: |setup| setup.plan.sampler = AnySampler::Sobol,
     },
     Strategy {
-        name: "independent",
-        change: |setup| setup.plan.sampler = AnySampler::Independent,
+        name: "independent points, lights sampled only",
+        change: |setup| {
+            setup.plan.sampler = AnySampler::Independent;
+            setup.mis(AnyMis::LightsOnly);
+        },
     },
 ];
 

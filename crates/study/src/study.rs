@@ -158,7 +158,8 @@ pub fn run(
         [REFERENCE_DEPTH, seeds, samples],
         strategies,
     ));
-    let study_key = key((&reference_key, &options.counts, options.threads));
+    let tier = format!("{:?}", options.tier);
+    let study_key = key((&reference_key, &options.counts, options.threads, tier));
     let mut work = Work {
         journal: Journal::open(&options.folder.join("journal.jsonl"), study_key)?,
         options,

@@ -73,6 +73,10 @@ pub(super) fn figure(findings: &Findings) -> Drawing {
         labels.take(at.0, at.1, &text);
         drawing.text(at.0, at.1, "name", &text);
     }
+    if findings.knee.is_none() {
+        let note = "no knee: along the front, more time buys as much as before";
+        drawing.text([RIGHT - 6.0, TOP + 16.0], Anchor::End, "note", note);
+    }
     let mut last = None;
     for (&index, point) in findings.front.iter().zip(&front) {
         let text = format!("{}, {}", name(point), point.samples);
