@@ -19,6 +19,7 @@ pub mod halstead;
 pub mod isa;
 pub mod measure;
 pub mod mesh;
+pub mod mitsuba;
 pub mod ours;
 pub mod peers;
 pub mod rays;

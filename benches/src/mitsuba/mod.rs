@@ -1,0 +1,17 @@
+//! Planned scenes as files of Mitsuba 3, so that it can be measured on what we render.
+//!
+//! ```text
+//! SceneDesc ─ plan, all numbers constant ─┬─ bsdf, shapes ─ ply ─▶ meshes/*.ply ◀┐
+//!                                         └─ scene ─ xml ────────▶ scene.xml ────┘ and sensor.xml
+//! ```
+//!
+//! What is exported is the plan, not the file, so that decisions of the plan (is this glass solid or thin? has this mesh normals
+//! of its own?) are taken once. Materials and lights without a faithful counterpart are refused by their names.
+
+mod bsdf;
+mod ply;
+mod scene;
+mod shapes;
+mod xml;
+
+pub use scene::{Exported, SCENE_FILE, SENSOR_FILE, export};
