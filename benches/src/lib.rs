@@ -14,6 +14,7 @@ pub mod command;
 pub mod compile;
 pub mod contender;
 pub mod coverage;
+pub mod efficiency;
 pub mod embree;
 pub mod halstead;
 pub mod isa;

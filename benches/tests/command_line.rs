@@ -124,3 +124,157 @@ fn compiling_and_code_are_measured() {
     }
     assert!(parts.iter().any(|row| row["part"] == "core"), "{parts:?}");
 }
+
+/// What `bench error` says of a small image of the triangle, with this program as Python.
+#[cfg(unix)]
+fn error_with_python(python: &str) -> Output {
+    run(&[
+        "error",
+        "--scene=triangle.obj",
+        "--json",
+        "--tier=interpreted",
+        "--size=8x8",
+        "--spp=1,4",
+        "--runs=3",
+        &format!("--python={python}"),
+    ])
+}
+
+/// A program in the place of Python.
+#[cfg(unix)]
+fn fake_python(folder: &tempfile::TempDir, script: &str) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let path = folder.path().join("python");
+    fs::write(&path, format!("#!/bin/sh\n{script}")).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    path.to_string_lossy().into_owned()
+}
+
+#[cfg(unix)]
+fn lines(output: &Output) -> (Vec<Value>, String) {
+    let rows = String::from_utf8_lossy(&output.stdout);
+    let rows = rows
+        .lines()
+        .map(|row| serde_json::from_str(row).unwrap())
+        .collect();
+    (rows, String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[cfg(unix)]
+#[test]
+fn without_the_peer_there_are_our_own_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let without_mitsuba = fake_python(
+        &folder,
+        r#"echo '{"missing": "No module named x"}'; exit 1"#,
+    );
+    for (python, reason) in [
+        ("no-such-python", "there is no no-such-python"),
+        (&without_mitsuba, "No module named x"),
+    ] {
+        let output = error_with_python(python);
+        let (rows, messages) = lines(&output);
+        assert!(output.status.success(), "{messages}");
+        let expected = format!("without Mitsuba: {reason}\n");
+        assert!(messages.contains(&expected), "{messages}");
+        let who = |row: &Value| json!([row["renderer"], row["sampler"], row["spp"]]);
+        assert_eq!(
+            rows.iter().map(who).collect::<Vec<_>>(),
+            [
+                json!(["Residual", "sobol", 1]),
+                json!(["Residual", "sobol", 4]),
+                json!(["Residual", "independent", 1]),
+                json!(["Residual", "independent", 4]),
+            ]
+        );
+        for row in &rows {
+            assert!(row["relmse"].as_f64().unwrap() > 0.0, "{row}");
+            assert!(row["cpu_s"].as_f64().unwrap() > 0.0, "{row}");
+            assert!(row["of_best_peer"].is_null(), "{row}");
+        }
+    }
+}
+
+/// It greets, and answers each request by a black image of 8 × 8 pixels.
+#[cfg(unix)]
+const BLACK_PEER: &str = r#"
+echo 'a library says hello'
+echo '{"renderer": "Black", "version": "1", "variant": "v", "samplers": ["a", "b"]}'
+while read -r request; do
+    image=$(printf '%s' "$request" | sed 's/.*"image":"\([^"]*\)".*/\1/')
+    head -c 768 /dev/zero > "$image"
+    echo '{"samples": 4, "cpu_s": 0.5}'
+done
+"#;
+
+#[cfg(unix)]
+#[test]
+fn a_peer_that_renders_another_scene_is_a_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = error_with_python(&fake_python(&folder, BLACK_PEER));
+    let (rows, messages) = lines(&output);
+    assert_eq!(output.status.code(), Some(1), "{messages}");
+    assert!(
+        messages.contains("the converged means differ by 100.0 %"),
+        "{messages}"
+    );
+    let of_peer: Vec<_> = rows
+        .iter()
+        .filter(|row| row["renderer"] == "Black")
+        .collect();
+    assert_eq!(of_peer.len(), 4);
+    for row in of_peer {
+        assert_eq!((&row["cpu_s"], &row["spp"]), (&json!(0.5), &json!(4)));
+        assert_eq!(row["runs"], 3);
+    }
+    let means = rows.last().unwrap();
+    assert_eq!(means["kind"], "means");
+    assert_eq!(means["ratios"], json!([0.0, 0.0, 0.0]));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_peer_that_fails_fails_the_job() {
+    let greeting = r#"echo '{"renderer": "P", "version": "1", "variant": "v", "samplers": ["a"]}'"#;
+    for (answers, expected) in [
+        (
+            "read -r request; exit 3",
+            "P ended without an answer: exit status: 3",
+        ),
+        (
+            r#"read -r request; echo '{"error": "no such thing"}'; read -r request"#,
+            "no such thing",
+        ),
+        (
+            r#"read -r request; echo '{"samples": 4, "cpu_s": 1}'; read -r request"#,
+            "reading its image",
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let script = format!("{greeting}\n{answers}\n");
+        let output = error_with_python(&fake_python(&folder, &script));
+        let (_, messages) = lines(&output);
+        assert_eq!(output.status.code(), Some(1), "{messages}");
+        assert!(messages.contains(expected), "{messages}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn scenes_with_other_materials_are_measured_without_the_peer() {
+    let textured = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/textured.gltf");
+    let output = run(&[
+        "error",
+        &format!("--scene={textured}"),
+        "--json",
+        "--tier=interpreted",
+        "--sampler=independent",
+        "--size=8x8",
+        "--spp=1",
+        "--runs=3",
+    ]);
+    let (rows, messages) = lines(&output);
+    assert!(output.status.success(), "{messages}");
+    assert_eq!(rows.len(), 1);
+    assert!(messages.contains("without Mitsuba: material"), "{messages}");
+}

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use residual_device_cpu::LaneCount;
 use residual_frontend::options::Size;
 use residual_render::sampler::AnySampler;
@@ -36,6 +36,78 @@ pub(super) enum Command {
     Compile(CompileBenchArgs),
     /// How true the stated error of renders is: many short ones of different seeds, beside the mean of all
     Coverage(CoverageArgs),
+    /// What accuracy costs: relative mean squared error and CPU seconds of renders, beside Mitsuba's (pip install mitsuba numpy)
+    Error(ErrorArgs),
+}
+
+#[derive(Args)]
+pub(super) struct ErrorArgs {
+    /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
+    #[arg(long, value_name = "FILE")]
+    pub(super) scene: Vec<PathBuf>,
+    /// One JSON object a line on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Images of each renderer, sampler and number of samples, each with its own seed
+    #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u32).range(3..=10_000))]
+    pub(super) runs: u32,
+    /// Samples per pixel, with commas between them; Mitsuba's samplers like 4, 16, 64, 256, …
+    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "16,64,256", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub(super) spp: Vec<u32>,
+    /// Image size
+    #[arg(long, value_name = "WxH", default_value = "256x256")]
+    pub(super) size: Size,
+    /// Most vertices of a path
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(super) max_depth: u32,
+    /// Our tier
+    #[arg(long, value_enum, default_value_t = TierArg::Specialized)]
+    pub(super) tier: TierArg,
+    /// Our samplers, with commas between them
+    #[arg(long, value_name = "SAMPLER", value_delimiter = ',', default_value = "sobol,independent", value_parser = sampler)]
+    pub(super) sampler: Vec<AnySampler>,
+    /// Threads of each renderer; 0 is one for each processor
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) threads: usize,
+    /// The renderer beside ours
+    #[arg(long, value_enum, default_value_t = PeerArg::Mitsuba)]
+    pub(super) peer: PeerArg,
+    /// The Python that has Mitsuba
+    #[arg(long, value_name = "PROGRAM", default_value = "python3")]
+    pub(super) python: PathBuf,
+    /// Mitsuba's variant [default: llvm_ad_rgb, or scalar_rgb without LLVM]
+    #[arg(long, value_name = "NAME")]
+    pub(super) variant: Option<String>,
+    /// Folder for the converged images, as PNG and EXR
+    #[arg(long, value_name = "FOLDER")]
+    pub(super) pictures: Option<PathBuf>,
+}
+
+/// How we render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum TierArg {
+    /// Without a compiler
+    Interpreted,
+    /// Compiled before the first image
+    Specialized,
+}
+
+impl TierArg {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Interpreted => "interpreted",
+            Self::Specialized => "specialized",
+        }
+    }
+}
+
+/// Whom we are measured beside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum PeerArg {
+    /// Mitsuba 3, where Python has it
+    Mitsuba,
+    /// Nobody
+    None,
 }
 
 #[derive(Args)]

@@ -3,6 +3,7 @@
 mod args;
 mod compile;
 mod coverage;
+mod error;
 mod render;
 mod scenes;
 mod shading;
@@ -23,6 +24,7 @@ pub fn main() -> ExitCode {
         Command::Shading(args) => shading::run(&args),
         Command::Compile(args) => compile::run(&args),
         Command::Coverage(args) => coverage::run(&args),
+        Command::Error(args) => error::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
