@@ -155,17 +155,18 @@ mod tests {
     use super::super::contender::Run;
     use super::*;
 
-    /// Images that differ from 1 by `spread`, one way or the other in turn.
+    /// Images that differ from 1 by `spread`, each pixel this or that way by chance.
     fn series(renderer: &str, sampler: &str, spread: f32, cpu_s: f64) -> Series {
-        let run = |index: usize| Run {
-            image: vec![
-                [if index.is_multiple_of(2) {
-                    1.0 + spread
-                } else {
-                    1.0 - spread
-                }; 3];
-                8
-            ],
+        let mut random = renderer.len() as u64 + 1000 * sampler.len() as u64;
+        let mut pixel = || {
+            random = random
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            let sign = if random >> 63 == 0 { 1.0 } else { -1.0 };
+            [1.0 + sign * spread; 3]
+        };
+        let mut run = |_| Run {
+            image: (0..500).map(|_| pixel()).collect(),
             cpu_s,
         };
         Series {
@@ -176,7 +177,7 @@ mod tests {
             },
             asked_for: 64,
             samples: 64,
-            runs: (0..40).map(run).collect(),
+            runs: (0..40).map(&mut run).collect(),
         }
     }
 
