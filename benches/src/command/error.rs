@@ -197,6 +197,7 @@ fn write_picture(folder: &Path, stem: &str, pool: &Pool<'_>, size: [u32; 2]) -> 
         size: size.map(|length| length as usize),
         colors: image.iter().map(|pixel| pixel.map(srgb_code)).collect(),
         channels: vec![("R", channel(0)), ("G", channel(1)), ("B", channel(2))],
+        comment: Some(format!("mean of renders by {stem}")),
     };
     for extension in ["png", "exr"] {
         let path = folder.join(format!("{stem}.{extension}"));

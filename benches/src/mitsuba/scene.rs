@@ -6,6 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use glam::Vec3;
 use residual_render::camera::CameraRecord;
+use residual_render::passes::RenderOptions;
 use residual_render::program::{CameraNode, LightNode};
 use residual_scenegen::desc::{LightDesc, PunctualKind, SceneDesc};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
@@ -64,7 +65,7 @@ pub fn export(
     // Both count the camera's own vertex out, the light's in; roulette begins at the same vertex.
     let integrator = Element::plugin("integrator", "path")
         .integer("max_depth", max_depth)
-        .integer("rr_depth", residual_render::passes::ROULETTE_FROM);
+        .integer("rr_depth", RenderOptions::default().roulette_from);
     let root = Element::new("scene")
         .attribute("version", "3.0.0")
         .child(integrator)

@@ -10,7 +10,7 @@ use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::surface::{PathRay, SurfaceHit};
 use residual_render::texture::Input;
 use residual_render::tracer::{
-    self, DebugView, Path, PathTracer, Settings, Tracer, TracerNode, TracerOptions,
+    self, DebugView, Path, PathTracer, PowerHeuristic, Settings, Tracer, TracerNode, TracerOptions,
 };
 
 use crate::check::check;
@@ -58,6 +58,7 @@ impl Formula for CameraAndSampler {
                 seed,
                 ..Settings::new(d, &OPTIONS)
             },
+            mis: PowerHeuristic,
         };
         let Path {
             ray,
