@@ -126,7 +126,8 @@ pub struct Finding {
     pub slope: Option<Jackknifed>,
     /// Error over CPU seconds.
     pub curve: Option<ErrorCurve>,
-    /// CPU seconds to 1 % error.
+    /// CPU seconds to 1 % error, with an interval that knows how uncertain the floor is, too: its upper end is infinite if the bias may be
+    /// above 1 %.
     pub to_one_percent: Option<Interval>,
     /// CPU seconds ÷ the baseline's at as many samples.
     pub time: Estimate,
@@ -227,11 +228,11 @@ impl Findings {
     /// If runs do not fit each other, or images are not finite.
     pub fn of(study: &Study) -> Result<Self> {
         let baseline = &study.measured[0];
-        let shared_floor = floor(bias(baseline, &study.reference)?);
+        let shared_bias = bias(baseline, &study.reference)?;
         let configurations = study
             .measured
             .iter()
-            .map(|measured| finding(measured, baseline, &study.reference, shared_floor))
+            .map(|measured| finding(measured, baseline, &study.reference, shared_bias))
             .collect::<Result<Vec<_>>>()?;
         let points = points(&configurations);
         let places: Vec<[f64; 2]> = points.iter().map(|p| [p.seconds, p.error]).collect();
@@ -266,19 +267,32 @@ fn floor(bias: Jackknifed) -> f64 {
     }
 }
 
+/// Seconds to an error, where the floor is as uncertain as this squared bias.
+fn time_to(error: f64, series: &Series, bias: Jackknifed) -> Option<Interval> {
+    let Jackknifed { value, ci95 } = bias;
+    let middle = series.time_to(error, floor(bias))?;
+    let end = |floor: f64| series.time_to(error, floor.max(0.0));
+    Some(Interval {
+        value: middle.value,
+        low: end(value - ci95).map_or(middle.low, |end| end.low.min(middle.low)),
+        high: end(value + ci95).map_or(f64::INFINITY, |end| end.high.max(middle.high)),
+    })
+}
+
 fn finding(
     measured: &Measured,
     baseline: &Measured,
     reference: &Reference,
-    shared_floor: f64,
+    shared_bias: Jackknifed,
 ) -> Result<Finding> {
     let series = Series::new(measured.runs.clone())?;
     let bias = bias(measured, reference)?;
-    let floor = if measured.configuration.axis.keeps_limit() {
-        shared_floor
+    let limit = if measured.configuration.axis.keeps_limit() {
+        shared_bias
     } else {
-        floor(bias)
+        bias
     };
+    let floor = floor(limit);
     let ratios = |of: &dyn Fn(&Measurement) -> f64| {
         let runs = measured.runs.iter().zip(&baseline.runs);
         Estimate::of(
@@ -298,7 +312,7 @@ fn finding(
         configuration: measured.configuration,
         slope: series.slope(floor),
         curve: series.curve(floor),
-        to_one_percent: series.time_to(ONE_PERCENT, floor),
+        to_one_percent: time_to(ONE_PERCENT, &series, limit),
         time: ratios(&|m| m.seconds),
         efficiency,
         series,
@@ -373,4 +387,60 @@ fn ladder(study: &Study, findings: &[Finding]) -> Vec<Rung> {
         })
     };
     SWITCHES.iter().filter_map(rung).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Runs whose error is 1 / N above this floor, 1 s a sample.
+    fn series(floor: f64) -> Series {
+        let run = |seed: u32| {
+            let one = |k: u32| {
+                let samples = 1_u64 << k;
+                let luck = 1.0 + 0.01 * f64::from(seed);
+                Measurement {
+                    samples,
+                    seconds: samples as f64,
+                    error: floor + luck / samples as f64,
+                }
+            };
+            (0..8).map(one).collect()
+        };
+        Series::new((0..6).map(run).collect()).unwrap()
+    }
+
+    #[test]
+    fn times_know_how_uncertain_the_floor_is() {
+        let of = |value, ci95| time_to(0.01, &series(0.005), Jackknifed { value, ci95 });
+        let certain = of(0.005, 1e-6).unwrap();
+        assert!(
+            certain.low < 204.0 && 204.0 < certain.high && certain.high < 220.0,
+            "{certain:?}"
+        );
+        let uncertain = of(0.005, 0.004).unwrap();
+        assert!(uncertain.low < 0.8 * certain.low && uncertain.high > 2.0 * certain.high);
+        assert_eq!(of(0.005, 0.0049).unwrap().value, certain.value);
+        assert_eq!(of(0.0055, 0.005).unwrap().high, f64::INFINITY);
+        assert_eq!(of(0.02, 0.001), None);
+    }
+
+    #[test]
+    fn what_is_not_certain_is_a_bound() {
+        let square = |value, ci95| Level::of_square(Jackknifed { value, ci95 });
+        assert_eq!(square(0.0, 0.04), Level::Below(0.2));
+        assert_eq!(square(-0.05, 0.04), Level::Below(0.0));
+        let Level::Seen { value, interval } = square(0.25, 0.11) else {
+            panic!("it is certain")
+        };
+        assert!(value == 0.5 && (interval[1] - 0.6).abs() < 1e-12);
+        let rate = |failures| {
+            Level::of_rate(FailureRate {
+                failures,
+                trials: 1000,
+            })
+        };
+        assert_eq!(rate(0), Level::Below(0.003));
+        assert!(matches!(rate(5), Level::Seen { value, .. } if value == 0.005));
+    }
 }

@@ -261,7 +261,7 @@ fn method(study: &Study, findings: &Findings) -> String {
     }
     items.extend([
         "Errors are relative mean squared errors: the mean of (x − r)² / (r² + ε), with ε a hundredth of the squared mean. The bias comes from products of the errors of different seeds, in which noise has no expectation. Where it is certain it is taken for the floor of the fit, error = bias² + v · time^−β; configurations that converge to the same as the default have its floor.".to_owned(),
-        "Medians have the interval between order statistics (below six runs, of all runs), slopes, biases and times to 1 % that of the jackknife over seeds, all of 95 %. One interval in twenty misses: of so many rows, some do.".to_owned(),
+        "Medians have the interval between order statistics (below six runs, of all runs), slopes, biases and times to 1 % that of the jackknife over seeds, times with the uncertainty of the floor, all of 95 %. One interval in twenty misses: of so many rows, some do.".to_owned(),
         "All configurations have the same seeds. That makes differences certain; the rows are not independent of each other.".to_owned(),
         "Misses are of this scene's triangles, seen from both sides, by rays that are aimed at edges of two triangles; images meet edges so closely once in a million rays or less. Nothing seen in n rays bounds the rate by 3 / n.".to_owned(),
     ]);

@@ -65,9 +65,13 @@ pub(super) fn jackknifed(number: Option<Jackknifed>) -> String {
 
 /// A time with its interval.
 pub(super) fn interval(interval: Option<Interval>) -> String {
-    interval.map_or("never".to_owned(), |i| {
-        format!("{} ({} to {})", time(i.value), time(i.low), time(i.high))
-    })
+    match interval {
+        None => "never".to_owned(),
+        Some(i) if i.high.is_infinite() => {
+            format!("{} ({} or more, or never)", time(i.value), time(i.low))
+        }
+        Some(i) => format!("{} ({} to {})", time(i.value), time(i.low), time(i.high)),
+    }
 }
 
 /// A bias.
