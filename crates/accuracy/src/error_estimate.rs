@@ -23,29 +23,12 @@
 //! estimates σ⁴ without bias.
 
 use crate::distrust::Distrust;
-use crate::moments::{CHANNELS, PixelMoments, Y};
-use crate::pixel_errors::{PixelErrors, Twice};
+use crate::moments::{CHANNELS, Y};
+use crate::sampled::{Replicate, Sampled};
+use crate::contributions::{Contributions, Twice};
 
 /// Fewest samples of a pixel that say something of its error: two in each half.
 pub const FEWEST_SAMPLES: u64 = 4;
-
-/// A pixel's samples.
-#[derive(Clone, Copy, Debug)]
-pub struct Sampled<'a> {
-    /// Their sums.
-    pub moments: &'a PixelMoments,
-    /// How many there are.
-    pub samples: u64,
-}
-
-/// A second, independent set of as many samples of a pixel, with points of the same kind.
-#[derive(Clone, Copy, Debug)]
-pub struct Replicate<'a> {
-    /// Index of the pixel.
-    pub pixel: usize,
-    /// Its second set of samples.
-    pub sampled: Sampled<'a>,
-}
 
 /// A number with the interval that holds the truth with 95 % confidence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -117,10 +100,10 @@ impl ErrorEstimate {
         }
         assert_eq!(pixels.len() % width, 0, "whole rows");
         let replicated = replicates.unwrap_or(&[]);
-        let errors = PixelErrors::of(width, pixels, replicated);
-        let colors = Sums::of(&errors, [0, 1, 2]);
+        let contributions = Contributions::of(width, pixels, replicated);
+        let colors = Sums::of(&contributions, [0, 1, 2]);
         let [red, green, blue, luminance] =
-            [0, 1, 2, Y].map(|channel| Sums::of(&errors, [channel]));
+            [0, 1, 2, Y].map(|channel| Sums::of(&contributions, [channel]));
         let used = replicated.len();
         Some(Self {
             relmse: colors.interval(used),
@@ -134,27 +117,27 @@ impl ErrorEstimate {
 
 impl Sums {
     /// The mean of channels.
-    fn of<const N: usize>(errors: &PixelErrors, channels: [usize; N]) -> Self {
+    fn of<const N: usize>(contributions: &Contributions, channels: [usize; N]) -> Self {
         let one_over = 1.0 / N as f64;
         let mean =
             |of: &dyn Fn(usize) -> f64| channels.iter().map(|&k| of(k)).sum::<f64>() * one_over;
-        let plain = mean(&|k| errors.plain[k]);
-        let jackknifed = mean(&|k| errors.jackknifed[k]);
+        let plain = mean(&|k| contributions.plain[k]);
+        let jackknifed = mean(&|k| contributions.jackknifed[k]);
         // Paths shade all channels: their errors are taken to rise and fall as one.
-        let products = mean(&|k| errors.products[k].sqrt()).powi(2);
-        let contributions = || {
+        let products = mean(&|k| contributions.products[k].sqrt()).powi(2);
+        let of_pixels = || {
             let of_pixel = |c: &[f32; CHANNELS]| {
                 channels.iter().map(|&k| f64::from(c[k])).sum::<f64>() * one_over
             };
-            errors.contributions.iter().map(of_pixel)
+            contributions.of_pixels.iter().map(of_pixel)
         };
         let replicates: Vec<[f64; 2]> = errors
             .replicates
             .iter()
             .map(|Twice { between, within }| [mean(&|k| between[k]), mean(&|k| within[k])])
             .collect();
-        let pixels = errors.contributions.len() as f64;
-        let squares = contributions().map(|c| c * c).sum::<f64>() / pixels / pixels;
+        let pixels = contributions.of_pixels.len() as f64;
+        let squares = of_pixels().map(|c| c * c).sum::<f64>() / pixels / pixels;
         if replicates.is_empty() {
             return Self {
                 value: jackknifed,
@@ -181,7 +164,7 @@ impl Sums {
             1.0
         };
 
-        let of_all = contributions()
+        let of_all = of_pixels()
             .map(|c| c - (1.0 - slope) * usual(c))
             .sum::<f64>()
             / pixels;

@@ -10,6 +10,7 @@
 
 pub mod color_map;
 pub mod comparison;
+mod contributions;
 mod convergence;
 mod distrust;
 mod error_estimate;
@@ -19,14 +20,14 @@ mod jackknife;
 mod luminance;
 mod moments;
 mod normal;
-mod pixel_errors;
 mod plausible;
 mod relative_mse;
+mod sampled;
 pub mod sweep;
 
 pub use convergence::{Convergence, Forecast, Measured};
 pub use distrust::Distrust;
-pub use error_estimate::{ErrorEstimate, FEWEST_SAMPLES, Interval, Replicate, Sampled};
+pub use error_estimate::{ErrorEstimate, FEWEST_SAMPLES, Interval};
 pub use estimate::Estimate;
 pub use flip::flip;
 pub use jackknife::Jackknifed;
@@ -34,3 +35,4 @@ pub use luminance::luminance;
 pub use moments::{CHANNELS, MeanVariance, PixelMoments, SampleIndex, Y};
 pub use normal::{normal_cdf, two_sided_tail};
 pub use relative_mse::relative_mse;
+pub use sampled::{Replicate, Sampled};

@@ -1,16 +1,16 @@
 //! What each pixel says of its error, relative to the square of its mean: the parts of an estimate.
 
-use crate::error_estimate::{Replicate, Sampled};
 use crate::moments::{CHANNELS, MeanVariance, halves_of};
 use crate::plausible::Plausible;
+use crate::sampled::{Replicate, Sampled};
 
 /// Of an image, by channel.
 #[derive(Clone, Debug)]
-pub(crate) struct PixelErrors {
+pub(crate) struct Contributions {
     /// By pixel: its samples' variance over their number.
-    pub(crate) contributions: Vec<[f32; CHANNELS]>,
+    pub(crate) of_pixels: Vec<[f32; CHANNELS]>,
     /// By replicate.
-    pub(crate) replicates: Vec<Twice>,
+    pub(crate) of_replicates: Vec<Twice>,
     /// Mean of the contributions.
     pub(crate) plain: [f64; CHANNELS],
     /// The same without the bias of noisy means.
@@ -28,7 +28,7 @@ pub(crate) struct Twice {
     pub(crate) within: [f64; CHANNELS],
 }
 
-impl PixelErrors {
+impl Contributions {
     pub(crate) fn of(width: usize, pixels: &[Sampled<'_>], replicates: &[Replicate<'_>]) -> Self {
         let count = pixels.len() as f64;
         let mut images = [(); 3].map(|()| Vec::with_capacity(pixels.len()));
@@ -59,9 +59,9 @@ impl PixelErrors {
             weight
         };
 
-        let mut errors = Self {
-            contributions: Vec::with_capacity(pixels.len()),
-            replicates: Vec::with_capacity(replicates.len()),
+        let mut contributions = Self {
+            of_pixels: Vec::with_capacity(pixels.len()),
+            of_replicates: Vec::with_capacity(replicates.len()),
             plain: [0.0; CHANNELS],
             jackknifed: [0.0; CHANNELS],
             products: [0.0; CHANNELS],
@@ -78,22 +78,22 @@ impl PixelErrors {
                 let plain = all.variance[k] * one_over * weight[k];
                 let product = halves[0].variance[k] * halves[1].variance[k];
                 let squared_weight = (weight[k] * one_over) * (weight[k] * one_over);
-                errors.plain[k] += plain;
-                errors.products[k] += 2.0 * product * squared_weight;
-                errors.jackknifed[k] += jackknifed[k];
+                contributions.plain[k] += plain;
+                contributions.products[k] += 2.0 * product * squared_weight;
+                contributions.jackknifed[k] += jackknifed[k];
                 contribution[k] = plain as f32;
             }
-            errors.contributions.push(contribution);
+            contributions.of_pixels.push(contribution);
         }
         for k in 0..CHANNELS {
-            errors.plain[k] /= count;
-            errors.products[k] /= count * count;
+            contributions.plain[k] /= count;
+            contributions.products[k] /= count * count;
             // A larger correction is no longer one.
-            let [least, most] = [0.5 * errors.plain[k], 2.0 * errors.plain[k]];
-            errors.jackknifed[k] = (errors.jackknifed[k] / count).clamp(least, most);
+            let [least, most] = [0.5 * contributions.plain[k], 2.0 * contributions.plain[k]];
+            contributions.jackknifed[k] = (contributions.jackknifed[k] / count).clamp(least, most);
         }
 
-        errors.replicates.extend(replicates.iter().map(|replicate| {
+        contributions.of_replicates.extend(replicates.iter().map(|replicate| {
             let pair = [pixels[replicate.pixel], replicate.sampled];
             let statistics = pair.map(|set| set.moments.statistics(set.samples));
             let [first, second] = [&statistics[0].0.mean, &statistics[1].0.mean];
@@ -106,7 +106,7 @@ impl PixelErrors {
                 within: std::array::from_fn(|k| 0.5 * (within[0][k] + within[1][k])),
             }
         }));
-        errors
+        contributions
     }
 }
 
