@@ -179,11 +179,16 @@ impl Traversal for AnyBvh {
     }
 
     fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&AlphaFilter<'_>>) {
-        self.with_precision(Watertight).visits(rays, visits, alpha);
+        with_tree!(&self.tree, simd, _kernel, bvh => with_filter!(self, alpha, filter => {
+            for (ray, visits) in rays.iter().zip(visits) {
+                let cost = traversal_cost(simd, Watertight, bvh, ray, filter);
+                *visits = cost.nodes + cost.packets;
+            }
+        }));
     }
 }
 
-/// A hierarchy with the precision of its test of triangles.
+/// A hierarchy with the precision of its test of triangles. It counts no visits.
 #[derive(Clone, Copy, Debug)]
 pub struct PreciseBvh<'a, P> {
     bvh: &'a AnyBvh,
@@ -202,15 +207,5 @@ impl<P: Precision> Traversal for PreciseBvh<'_, P> {
         let (scene, precision) = (self.bvh, self.precision);
         with_tree!(&scene.tree, simd, kernel, bvh => with_filter!(scene, alpha, filter =>
             kernel.any_hits(simd, precision, bvh, rays, occluded, filter)));
-    }
-
-    fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&AlphaFilter<'_>>) {
-        let (scene, precision) = (self.bvh, self.precision);
-        with_tree!(&scene.tree, simd, _kernel, bvh => with_filter!(scene, alpha, filter => {
-            for (ray, visits) in rays.iter().zip(visits) {
-                let cost = traversal_cost(simd, precision, bvh, ray, filter);
-                *visits = cost.nodes + cost.packets;
-            }
-        }));
     }
 }

@@ -35,10 +35,10 @@ struct Cli {
     /// Two minutes: a small image, few samples and seeds, and the configurations that matter most
     #[arg(long)]
     quick: bool,
-    /// Width and height of the image in pixels [default: 192x144, or 128x96 with --quick]
+    /// Width and height of the image in pixels [default: 192x144, or 96x72 with --quick]
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
-    /// Runs of each configuration, each with its own seed [default: 15, or 6 with --quick]
+    /// Runs of each configuration, each with its own seed [default: 15, or 8 with --quick]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=1000))]
     seeds: Option<u32>,
     /// Samples per pixel at the end of a run, a power of two [default: 256, or 64 with --quick]
@@ -91,7 +91,7 @@ impl Cli {
 
     fn options(&self) -> StudyOptions {
         let (extent, size, seeds, most, reference, aimed_rays) = match self.quick {
-            true => (Extent::Quick, [128, 96], 6, 64, 32, 1_000_000),
+            true => (Extent::Quick, [96, 72], 8, 64, 32, 1_000_000),
             false => (Extent::Full, [192, 144], 15, 256, 64, 10_000_000),
         };
         let most = self.spp.unwrap_or(most);
