@@ -7,7 +7,7 @@ use super::chart::{self, escaped};
 use super::crops::Window;
 use super::{error_figure, ladder_figure, numbers, pareto_figure};
 use crate::configuration::{Axis, NOT_MEASURED, Removes, Tier};
-use crate::findings::{Finding, Findings, Study};
+use crate::findings::{Finding, Findings, Level, Study};
 
 const TEMPLATE: &str = include_str!("template.html");
 const PAGE_STYLE: &str = include_str!("page.css");
@@ -92,16 +92,17 @@ fn answer(study: &Study, findings: &Findings) -> String {
             numbers::bias(baseline.relative_bias())
         ),
     ];
-    if let Some(index) = findings.knee {
-        let point = &findings.points[index];
-        lines.push(format!(
-            "After {} ({}, {} samples) more time buys less.",
-            numbers::time(point.seconds),
-            findings.configurations[point.configuration]
-                .configuration
-                .name,
-            point.samples
-        ));
+    for rung in &findings.ladder {
+        if let (Removes::Misses(..), Level::Seen { value, .. }) =
+            (rung.switch.removes, rung.without)
+        {
+            lines.push(format!(
+                "Of a million rays aimed at edges, {} pass between triangles without {}, which changes the time by {}.",
+                numbers::digits(1e6 * value),
+                rung.switch.name,
+                numbers::change(rung.time.median)
+            ));
+        }
     }
     let mut text: String = lines
         .iter()

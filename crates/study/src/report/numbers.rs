@@ -52,6 +52,9 @@ pub(super) fn percent(part: f64) -> String {
 /// A change in per cent, with its sign.
 pub(super) fn change(part: f64) -> String {
     let percent = 100.0 * part;
+    if percent.abs() < 5e-4 {
+        return "0 %".to_owned();
+    }
     let digits = if percent.abs() < 0.1 { 3 } else { 1 };
     format!("{percent:+.digits$} %").replace('-', "−")
 }
@@ -109,6 +112,9 @@ mod tests {
             [time(2e-3), time(61.25), time(7200.0)],
             ["2.00 ms", "61.2 s", "120 min"]
         );
-        assert_eq!(change(-0.0123), "−1.2 %");
+        assert_eq!(
+            [change(-0.0123), change(2e-4), change(-1e-6)],
+            ["−1.2 %", "+0.020 %", "0 %"]
+        );
     }
 }
