@@ -93,19 +93,23 @@ impl Contributions {
             contributions.jackknifed[k] = (contributions.jackknifed[k] / count).clamp(least, most);
         }
 
-        contributions.of_replicates.extend(replicates.iter().map(|replicate| {
-            let pair = [pixels[replicate.pixel], replicate.sampled];
-            let statistics = pair.map(|set| set.moments.statistics(set.samples));
-            let [first, second] = [&statistics[0].0.mean, &statistics[1].0.mean];
-            let middle = std::array::from_fn(|k| 0.5 * (first[k] + second[k]));
-            let weight = scale(&images[0], replicate.pixel, middle);
-            let within =
-                [0, 1].map(|k| jackknifed(pair[k].samples, &statistics[k], weight, [weight; 2]));
-            Twice {
-                between: std::array::from_fn(|k| 0.5 * (first[k] - second[k]).powi(2) * weight[k]),
-                within: std::array::from_fn(|k| 0.5 * (within[0][k] + within[1][k])),
-            }
-        }));
+        contributions
+            .of_replicates
+            .extend(replicates.iter().map(|replicate| {
+                let pair = [pixels[replicate.pixel], replicate.sampled];
+                let statistics = pair.map(|set| set.moments.statistics(set.samples));
+                let [first, second] = [&statistics[0].0.mean, &statistics[1].0.mean];
+                let middle = std::array::from_fn(|k| 0.5 * (first[k] + second[k]));
+                let weight = scale(&images[0], replicate.pixel, middle);
+                let within = [0, 1]
+                    .map(|k| jackknifed(pair[k].samples, &statistics[k], weight, [weight; 2]));
+                Twice {
+                    between: std::array::from_fn(|k| {
+                        0.5 * (first[k] - second[k]).powi(2) * weight[k]
+                    }),
+                    within: std::array::from_fn(|k| 0.5 * (within[0][k] + within[1][k])),
+                }
+            }));
         contributions
     }
 }

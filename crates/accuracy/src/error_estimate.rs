@@ -22,10 +22,10 @@
 //! of any distribution: the squares, and with them the bright samples, cancel. The product of the two halves' variances
 //! estimates σ⁴ without bias.
 
+use crate::contributions::{Contributions, Twice};
 use crate::distrust::Distrust;
 use crate::moments::{CHANNELS, Y};
 use crate::sampled::{Replicate, Sampled};
-use crate::contributions::{Contributions, Twice};
 
 /// Fewest samples of a pixel that say something of its error: two in each half.
 pub const FEWEST_SAMPLES: u64 = 4;
@@ -131,8 +131,8 @@ impl Sums {
             };
             contributions.of_pixels.iter().map(of_pixel)
         };
-        let replicates: Vec<[f64; 2]> = errors
-            .replicates
+        let replicates: Vec<[f64; 2]> = contributions
+            .of_replicates
             .iter()
             .map(|Twice { between, within }| [mean(&|k| between[k]), mean(&|k| within[k])])
             .collect();

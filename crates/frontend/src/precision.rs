@@ -88,7 +88,7 @@ mod tests {
             assert_eq!(percent(relmse), text);
         }
         assert_eq!(
-            [time(3.14), time(59.6), time(180.0), time(9000.0)],
+            [time(3.13), time(59.6), time(180.0), time(9000.0)],
             ["3.1 s", "60 s", "3 min", "2.5 h"]
         );
     }
