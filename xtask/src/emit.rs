@@ -7,7 +7,8 @@ use residual_device_cpu::LaneCount;
 use residual_driver::compile::lanes_name;
 use residual_scenegen::emit::rust;
 
-use crate::args::{EmitArgs, TargetArg};
+use crate::args::EmitArgs;
+use crate::choices::TargetArg;
 use crate::scene;
 
 pub(crate) fn run(args: &EmitArgs) -> Result<()> {

@@ -10,7 +10,8 @@ use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{BindingTimes, Decision, Plan, PlanOptions};
 use serde_json::{Map, Value, json};
 
-use crate::args::{InspectArgs, TierArg};
+use crate::args::InspectArgs;
+use crate::choices::TierArg;
 use crate::{prices, scene};
 
 pub(crate) fn run(args: &InspectArgs) -> Result<()> {

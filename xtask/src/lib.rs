@@ -5,6 +5,7 @@
 mod args;
 mod build;
 mod cache;
+mod choices;
 mod compare;
 mod delegate;
 mod emit;
@@ -19,7 +20,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::args::{Cli, Command, DeviceArg};
+use crate::args::{Cli, Command};
+use crate::choices::DeviceArg;
 
 /// The command line: status 0, 1 for a failed job, 2 for bad usage and for images that cannot be compared.
 pub fn main() -> ExitCode {

@@ -10,7 +10,8 @@ use residual_frontend::hierarchy_quality;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{DeviceReport, Preparation, Statistics};
 
-use crate::args::{RenderArgs, SpecializeArg, TierArg};
+use crate::args::RenderArgs;
+use crate::choices::{SpecializeArg, TierArg};
 use crate::scene;
 
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {

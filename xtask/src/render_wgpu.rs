@@ -10,7 +10,8 @@ use residual_frontend::hierarchy_quality;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{DeviceReport, Preparation, Statistics, TierReport};
 
-use crate::args::{MappingArg, RenderArgs, TierArg};
+use crate::args::RenderArgs;
+use crate::choices::{MappingArg, TierArg};
 use crate::scene;
 
 /// Renders on a GPU.

@@ -12,7 +12,8 @@ use residual_scenegen::plan::{
     Binding, CameraChoice, CullingRule, LightPicks, Plan, PlanOptions, View, plan,
 };
 
-use crate::args::{CullingArg, LightsArg, SamplerArg, SceneArgs, SpecializeArg};
+use crate::args::SceneArgs;
+use crate::choices::{CullingArg, LightsArg, SamplerArg, SpecializeArg};
 
 /// What statistics say about a planned scene.
 pub(crate) fn summary(plan: &Plan) -> SceneSummary {
