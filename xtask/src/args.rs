@@ -114,7 +114,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_enum, default_value_t = ViewArg::Normals)]
     pub(crate) view: ViewArg,
     /// Layers of an EXR beside radiance, with commas between them: albedo, normal, depth, position, object_index,
-    /// material_index, sample_count
+    /// material_index, sample_count, variance, standard_error
     #[arg(long, value_name = "LAYER", value_delimiter = ',')]
     pub(crate) aov: Vec<Layer>,
     /// When a material's numbers are known to the compiler
