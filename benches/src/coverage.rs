@@ -5,7 +5,7 @@ use residual_accuracy::{ErrorEstimate, Estimate, Interval, luminance, relative_m
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
 use residual_frontend::hierarchy_quality;
 use residual_render::film::{Film, TILE_SIZE};
-use residual_render::passes::{MAX_PASS, Pass, RenderOptions};
+use residual_render::passes::RenderOptions;
 use residual_scenegen::plan::Plan;
 use serde_json::{Value, json};
 
@@ -112,17 +112,7 @@ pub fn coverage(
         let film = Film::new(size[0], size[1], TILE_SIZE, plan.structure.layers);
         let mut film = film.with_second_set(seed);
         for (&until, runs) in samples.iter().zip(&mut at) {
-            while film.samples() < u64::from(until) {
-                let first = film.samples() as u32;
-                let count = MAX_PASS.min(until - first);
-                device.pass(
-                    &interpreter,
-                    &view,
-                    &options,
-                    &mut film,
-                    Pass { first, count },
-                );
-            }
+            device.render_until(&interpreter, &view, &options, &mut film, until);
             runs.push(Run {
                 image: film.image(),
                 stated: film.error().expect("at least four samples"),

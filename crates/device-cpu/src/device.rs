@@ -8,7 +8,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use residual_render::film::{Film, FilmTile, SampleSet, TILE_SIZE};
 use residual_render::passes::{
-    Counters, Pass, Progress, RenderOptions, RenderReport, render_passes,
+    Counters, MAX_PASS, Pass, Progress, RenderOptions, RenderReport, render_passes,
 };
 
 use crate::job::{SceneView, TileJob, TileRenderer};
@@ -64,6 +64,22 @@ impl CpuDevice {
         let mut tiles: Vec<_> = first.iter_mut().map(|t| (SampleSet::First, t)).collect();
         tiles.extend(second);
         self.tiles(renderer, scene, options, tiles, pass)
+    }
+
+    /// Adds passes to a film until it has so many samples a pixel.
+    pub fn render_until(
+        &self,
+        renderer: &dyn TileRenderer,
+        scene: &SceneView<'_>,
+        options: &RenderOptions,
+        film: &mut Film,
+        samples: u32,
+    ) {
+        while film.samples() < u64::from(samples) {
+            let first = film.samples() as u32;
+            let count = MAX_PASS.min(samples - first);
+            self.pass(renderer, scene, options, film, Pass { first, count });
+        }
     }
 
     /// Adds a pass of samples to tiles of a film that has the renderer's layers.

@@ -187,8 +187,8 @@ fn open_exr(film: &Film, metadata: &Metadata) -> Result<Vec<u8>> {
     });
     let mut channels: SmallVec<[_; 4]> = radiance.collect();
     for layer in film.layers().iter() {
-        for (k, channel) in layer.channels().iter().enumerate() {
-            let values = film.channel(layer, k).expect("the film has its layers");
+        let values = film.layer(layer).expect("the film has its layers");
+        for (channel, values) in layer.channels().iter().zip(values) {
             let name = format!("{layer}.{channel}");
             channels.push(AnyChannel::new(name.as_str(), FlatSamples::F32(values)));
         }

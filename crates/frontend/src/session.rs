@@ -222,6 +222,11 @@ fn progress_bar(args: &RenderArgs, options: &RenderOptions) -> ProgressBar {
         (None, Some(time)) => time.as_millis() as u64,
         (None, None) => 0,
     };
+    bar_of(length)
+}
+
+/// A progress bar as all commands show it.
+pub fn bar_of(length: u64) -> ProgressBar {
     let style =
         ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {elapsed} gone, {eta} left");
     ProgressBar::new(length).with_style(style.expect("the template is valid"))

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use residual_accuracy::{Convergence, ErrorEstimate, Measured};
+use residual_accuracy::{Convergence, Measured};
 
 use crate::film::{Film, SampleSet};
 use crate::tracer::TracerOptions;
@@ -87,13 +87,6 @@ pub struct RenderReport {
     pub elapsed: Duration,
     /// The error on the way and at the end.
     pub convergence: Convergence,
-}
-
-impl RenderReport {
-    /// The error at the end; `None` if there are too few samples to say.
-    pub fn error(&self) -> Option<ErrorEstimate> {
-        self.convergence.last().map(|last| last.error)
-    }
 }
 
 /// What was done, and how long each stage took: thread seconds of processors, or seconds of a GPU.

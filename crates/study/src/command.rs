@@ -5,8 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use residual_frontend::options::Size;
+use residual_frontend::session::bar_of;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::CameraChoice;
 
@@ -149,11 +150,8 @@ fn run(args: &Cli) -> Result<()> {
     let bar = if args.quiet {
         ProgressBar::hidden()
     } else {
-        ProgressBar::new(1)
+        bar_of(1)
     };
-    let style =
-        ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {elapsed} gone, {eta} left");
-    bar.set_style(style.expect("the template is valid"));
     let study = study::run(&scene, &args.options(), |step| match step {
         Step::Begins(what) => bar.set_message(what),
         Step::Rendered { samples, of } => {

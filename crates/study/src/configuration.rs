@@ -3,7 +3,8 @@
 //! A row of [`CONFIGURATIONS`] is all that it takes to measure another one. [`SWITCHES`] says which pairs of them are the two sides of
 //! a choice between time and truth.
 
-use residual_device_cpu::LaneCount;
+use residual_bvh::{Exact, Fast, Watertight};
+use residual_device_cpu::{AnyBvh, LaneCount, Traversal};
 use residual_render::passes::RenderOptions;
 use residual_render::sampler::AnySampler;
 use residual_render::tracer::{AnyMis, TracerNode};
@@ -47,6 +48,17 @@ pub enum TraversalPrecision {
     Watertight,
     /// Decisions as in exact arithmetic.
     Exact,
+}
+
+impl TraversalPrecision {
+    /// Traces rays through a hierarchy with it.
+    pub fn of<'a>(self, bvh: &'a AnyBvh) -> Box<dyn Traversal + Sync + 'a> {
+        match self {
+            Self::Fast => Box::new(bvh.with_precision(Fast)),
+            Self::Watertight => Box::new(bvh.with_precision(Watertight)),
+            Self::Exact => Box::new(bvh.with_precision(Exact)),
+        }
+    }
 }
 
 /// How the renderer is made.

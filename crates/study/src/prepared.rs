@@ -5,16 +5,15 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 use residual_accuracy::luminance;
-use residual_bvh::{Exact, Fast};
 use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{
-    AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileJob, TileRenderer, Traversal,
+    AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileJob, TileRenderer,
 };
 use residual_driver::compile;
 use residual_frontend::{hierarchy_quality, process_time};
 use residual_render::film::{Film, SampleSet, TILE_SIZE, TileRect};
 use residual_render::layer::Layers;
-use residual_render::passes::{Counters, MAX_PASS, Pass, RenderOptions};
+use residual_render::passes::{Counters, Pass, RenderOptions};
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::plan::{Plan, plan};
 
@@ -131,31 +130,15 @@ impl Prepared {
         };
         let [width, height] = options.size;
         let mut film = Film::new(width, height, TILE_SIZE, Layers::NONE);
-        let (fast, exact);
-        let traversal: &(dyn Traversal + Sync) = match self.precision {
-            TraversalPrecision::Watertight => &*self.bvh,
-            TraversalPrecision::Fast => {
-                fast = self.bvh.with_precision(Fast);
-                &fast
-            }
-            TraversalPrecision::Exact => {
-                exact = self.bvh.with_precision(Exact);
-                &exact
-            }
-        };
+        let traversal = self.precision.of(&self.bvh);
         let view = SceneView {
             buffers: self.plan.data.buffers(),
-            traversal,
+            traversal: &*traversal,
         };
-        let (mut done, mut cpu) = (0, Duration::ZERO);
+        let mut cpu = Duration::ZERO;
         for &samples in counts {
             let before = process_time();
-            while done < samples {
-                let count = MAX_PASS.min(samples - done);
-                let pass = Pass { first: done, count };
-                device.pass(&*self.renderer, &view, &options, &mut film, pass);
-                done += count;
-            }
+            device.render_until(&*self.renderer, &view, &options, &mut film, samples);
             cpu += process_time() - before;
             look(SoFar {
                 samples,

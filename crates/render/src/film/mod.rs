@@ -153,43 +153,55 @@ impl Film {
     /// One channel of a layer, row by row from the top; `None` where the film does not have the layer, or the layer not
     /// so many channels.
     pub fn channel(&self, layer: Layer, channel: usize) -> Option<Vec<f32>> {
-        if !self.layers.has(layer) || channel >= layer.channels().len() {
-            return None;
-        }
-        let stride = self.layers.stride() - Layers::RADIANCE;
-        let kept = |(tile, index): (&FilmTile, usize)| {
-            let offset = self.layers.offset(layer) - Layers::RADIANCE + channel;
-            tile.channels[index * stride + offset]
-        };
-        let values = match layer.reduction() {
-            Reduction::Mean => self
-                .places()
-                .map(|place| (kept(place) / (place.0.samples.max(1) as f64)) as f32)
-                .collect(),
-            Reduction::First => self.places().map(|place| kept(place) as f32).collect(),
-            Reduction::Statistic(statistic) => self.statistic(statistic, channel),
-        };
-        Some(values)
+        self.layer(layer)?.into_iter().nth(channel)
     }
 
-    /// What is known of the samples of each pixel.
-    fn statistic(&self, statistic: Statistic, channel: usize) -> Vec<f32> {
+    /// All channels of a layer; `None` where the film does not have it.
+    pub fn layer(&self, layer: Layer) -> Option<Vec<Vec<f32>>> {
+        if !self.layers.has(layer) {
+            return None;
+        }
+        let channels = 0..layer.channels().len();
+        if let Reduction::Statistic(statistic) = layer.reduction() {
+            return Some(self.statistic(statistic, channels.len()));
+        }
+        let stride = self.layers.stride() - Layers::RADIANCE;
+        let first = self.layers.offset(layer) - Layers::RADIANCE;
+        let values = |channel: usize| {
+            let value = |(tile, index): (&FilmTile, usize)| {
+                let kept = tile.channels[index * stride + first + channel];
+                let count = match layer.reduction() {
+                    Reduction::Mean => tile.samples.max(1),
+                    Reduction::First | Reduction::Statistic(_) => 1,
+                };
+                (kept / count as f64) as f32
+            };
+            self.places().map(value).collect()
+        };
+        Some(channels.map(values).collect())
+    }
+
+    /// What is known of the samples of each pixel, in so many channels.
+    fn statistic(&self, statistic: Statistic, channels: usize) -> Vec<Vec<f32>> {
         // Of these points' error, the samples' variance says too much.
         let effect = match statistic {
             Statistic::StandardError => self.error().map_or(1.0, |error| error.design_effect),
             Statistic::Variance | Statistic::Count => 1.0,
         };
-        let value = |sampled: Sampled<'_>| {
-            let samples = sampled.samples as f64;
-            let variance = || sampled.moments.statistics(sampled.samples).0.variance[channel];
-            let value = match statistic {
-                Statistic::Count => samples,
-                Statistic::Variance => variance(),
-                Statistic::StandardError => (variance() / samples.max(1.0) * effect).sqrt(),
+        let values = |channel: usize| {
+            let value = |sampled: Sampled<'_>| {
+                let samples = sampled.samples as f64;
+                let variance = || sampled.moments.statistics(sampled.samples).0.variance[channel];
+                let value = match statistic {
+                    Statistic::Count => samples,
+                    Statistic::Variance => variance(),
+                    Statistic::StandardError => (variance() / samples.max(1.0) * effect).sqrt(),
+                };
+                value as f32
             };
-            value as f32
+            self.sampled().map(value).collect()
         };
-        self.sampled().map(value).collect()
+        (0..channels).map(values).collect()
     }
 
     /// The image: mean linear red, green, blue, row by row from the top.

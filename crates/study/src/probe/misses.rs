@@ -7,8 +7,8 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 use residual_accuracy::sweep::FailureRate;
-use residual_bvh::{Exact, Fast, Ray};
-use residual_device_cpu::{AnyBvh, LaneCount, Traversal};
+use residual_bvh::Ray;
+use residual_device_cpu::{AnyBvh, LaneCount};
 use residual_frontend::hierarchy_quality;
 use residual_render::scene_data::SceneData;
 
@@ -78,18 +78,7 @@ impl Target {
         if self.edges.is_empty() {
             return None;
         }
-        let (fast, exact);
-        let traversal: &dyn Traversal = match precision {
-            TraversalPrecision::Watertight => &self.bvh,
-            TraversalPrecision::Fast => {
-                fast = self.bvh.with_precision(Fast);
-                &fast
-            }
-            TraversalPrecision::Exact => {
-                exact = self.bvh.with_precision(Exact);
-                &exact
-            }
-        };
+        let traversal = precision.of(&self.bvh);
         let mut random = Random(1);
         let (mut trials, mut failures) = (0, 0);
         let mut batch = Vec::with_capacity(BATCH);

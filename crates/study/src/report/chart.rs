@@ -181,6 +181,19 @@ impl Drawing {
         ));
     }
 
+    /// The title of a chart of errors over time, its grid and its axes.
+    pub(super) fn frame(&mut self, title: &str, x: &Scale, y: &Scale) {
+        let ([left, right], [bottom, top]) = ([x.from, x.to], [y.from, y.to]);
+        self.text([left, 20.0], Anchor::Start, "title", title);
+        self.horizontal(x, top, bottom);
+        self.vertical(y, left, right);
+        self.line(&[[left, top], [left, bottom], [right, bottom]], "axis");
+        let below = [0.5 * (left + right), bottom + 36.0];
+        self.text(below, Anchor::Middle, "note", "CPU seconds");
+        let above = [right, 20.0];
+        self.text(above, Anchor::End, "note", "relative mean squared error");
+    }
+
     /// Grid lines and labels of a horizontal scale, from `top` to `bottom`.
     pub(super) fn horizontal(&mut self, scale: &Scale, top: f64, bottom: f64) {
         for tick in scale.ticks() {
@@ -196,7 +209,7 @@ impl Drawing {
     }
 
     /// Grid lines and labels of a vertical scale, from `left` to `right`.
-    pub(super) fn vertical(&mut self, scale: &Scale, left: f64, right: f64) {
+    fn vertical(&mut self, scale: &Scale, left: f64, right: f64) {
         for tick in scale.ticks() {
             let y = scale.at(tick);
             self.line(&[[left, y], [right, y]], "grid");

@@ -42,23 +42,7 @@ fn chart(title: &str, shown: &[&Finding]) -> Drawing {
     let measured = || shown.iter().flat_map(|f| f.series.runs().iter().flatten());
     let x = Scale::of(measured().map(|m| m.seconds), LEFT, RIGHT);
     let y = Scale::of(measured().map(|m| m.error), BOTTOM, TOP);
-    drawing.text([LEFT, 20.0], Anchor::Start, "title", title);
-    drawing.horizontal(&x, TOP, BOTTOM);
-    drawing.vertical(&y, LEFT, RIGHT);
-    drawing.line(&[[LEFT, TOP], [LEFT, BOTTOM], [RIGHT, BOTTOM]], "axis");
-    let middle = 0.5 * (LEFT + RIGHT);
-    drawing.text(
-        [middle, BOTTOM + 36.0],
-        Anchor::Middle,
-        "note",
-        "CPU seconds",
-    );
-    drawing.text(
-        [RIGHT, 20.0],
-        Anchor::End,
-        "note",
-        "relative mean squared error",
-    );
+    drawing.frame(title, &x, &y);
     if y.has(ONE_PERCENT) {
         let height = y.at(ONE_PERCENT);
         drawing.line(&[[LEFT, height], [RIGHT, height]], "mark");

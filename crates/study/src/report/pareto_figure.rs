@@ -17,27 +17,7 @@ pub(super) fn figure(findings: &Findings) -> Drawing {
     let points = &findings.points;
     let x = Scale::of(points.iter().map(|p| p.seconds), LEFT, RIGHT);
     let y = Scale::of(points.iter().map(|p| p.error), BOTTOM, TOP);
-    drawing.text(
-        [LEFT, 20.0],
-        Anchor::Start,
-        "title",
-        "What no other configuration beats",
-    );
-    drawing.horizontal(&x, TOP, BOTTOM);
-    drawing.vertical(&y, LEFT, RIGHT);
-    drawing.line(&[[LEFT, TOP], [LEFT, BOTTOM], [RIGHT, BOTTOM]], "axis");
-    drawing.text(
-        [0.5 * (LEFT + RIGHT), BOTTOM + 36.0],
-        Anchor::Middle,
-        "note",
-        "CPU seconds",
-    );
-    drawing.text(
-        [RIGHT, 20.0],
-        Anchor::End,
-        "note",
-        "relative mean squared error",
-    );
+    drawing.frame("What no other configuration beats", &x, &y);
     let name = |point: &Point| {
         findings.configurations[point.configuration]
             .configuration
