@@ -75,9 +75,14 @@ impl<'a> Session<'a> {
         let mut next_image = Duration::ZERO;
         let mut failed = None;
         let show = |progress: Progress<'_>| {
-            match options.samples {
-                Some(_) => bar.set_position(u64::from(progress.samples)),
-                None => bar.set_position(progress.elapsed.as_millis() as u64),
+            match (options.samples, options.time) {
+                (None, Some(_)) => bar.set_position(progress.elapsed.as_millis() as u64),
+                _ => bar.set_position(u64::from(progress.samples)),
+            }
+            if let (None, None, Some(error)) = (options.samples, options.time, options.error)
+                && let Some(end) = progress.convergence.forecast(error * error)
+            {
+                bar.set_length((end.samples as u64).max(u64::from(progress.samples)));
             }
             bar.set_message(match progress.convergence.last() {
                 Some(last) => format!(
@@ -216,7 +221,8 @@ fn progress_bar(args: &RenderArgs, options: &RenderOptions) -> ProgressBar {
     if args.quiet {
         return ProgressBar::hidden();
     }
-    // By samples where their number is known, else by milliseconds of the time limit.
+    // By samples where their number is known, else by milliseconds of the time limit. How many samples it takes to an error is
+    // forecast on the way.
     let length = match (options.samples, options.time) {
         (Some(samples), _) => u64::from(samples),
         (None, Some(time)) => time.as_millis() as u64,
