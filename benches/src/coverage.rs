@@ -1,10 +1,12 @@
 //! How true the error is that renders state: many short renders of different seeds, each beside the mean of all others.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use anyhow::{Context, Result};
 use residual_accuracy::{ErrorEstimate, Estimate, Interval, luminance, relative_mse};
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
 use residual_frontend::hierarchy_quality;
-use residual_render::film::{Film, TILE_SIZE};
+use residual_render::film::{Film, Sampling, TILE_SIZE, TileRect};
 use residual_render::passes::RenderOptions;
 use residual_scenegen::plan::Plan;
 use serde_json::{Value, json};
@@ -63,6 +65,8 @@ pub struct Row {
     pub samples: u32,
     /// Of what.
     pub quantity: Quantity,
+    /// Width and height of the part of the image that was looked at.
+    pub size: [u32; 2],
     /// Renders.
     pub runs: usize,
     /// Their relative mean squared errors.
@@ -81,19 +85,46 @@ pub struct Row {
     pub failures_distrusted: Option<f64>,
 }
 
+/// What is rendered, and which parts of the image are looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The scene.
+    pub plan: &'a Plan,
+    /// Width and height of the image.
+    pub size: [u32; 2],
+    /// How samples are spread over it.
+    pub sampling: Sampling,
+    /// The parts, within the image.
+    pub parts: &'a [TileRect],
+}
+
+/// A part of an image of `width` pixels a row.
+fn part_of(image: &[[f32; 3]], width: u32, part: TileRect) -> Vec<[f32; 3]> {
+    let rows = image.chunks_exact(width as usize);
+    rows.skip(part.y as usize)
+        .take(part.height as usize)
+        .flat_map(|row| &row[part.x as usize..][..part.width as usize])
+        .copied()
+        .collect()
+}
+
 /// Renders `runs` times, and looks at the error after each of these numbers of samples, which are ascending.
 ///
 /// # Errors
 /// If the system gives no threads.
 pub fn coverage(
-    plan: &Plan,
-    size: [u32; 2],
+    subject: &Subject<'_>,
     samples: &[u32],
     runs: u32,
     threads: usize,
-    mut progress: impl FnMut(u32),
+    progress: impl Fn(u32) + Sync,
 ) -> Result<Vec<Row>> {
-    let device = CpuDevice::new(threads).context("starting threads")?;
+    let &Subject {
+        plan,
+        size,
+        sampling,
+        parts,
+    } = subject;
     let lanes = LaneCount::native();
     let quality = hierarchy_quality(plan.data.triangle_count());
     let bvh = AnyBvh::build(&plan.data, lanes, quality);
@@ -102,34 +133,71 @@ pub fn coverage(
         traversal: &bvh,
     };
     let interpreter = Interpreter::new(plan.structure.clone(), lanes);
-    let mut at: Vec<Vec<Run>> = samples.iter().map(|_| Vec::new()).collect();
-    for seed in 0..runs {
+    let render = |device: &CpuDevice, seed: u32| -> Vec<Vec<Run>> {
         let options = RenderOptions {
             size,
             seed,
+            sampling,
             ..RenderOptions::default()
         };
-        let film = Film::new(size[0], size[1], TILE_SIZE, plan.structure.layers);
+        let film = Film::sampled_by(sampling, size, TILE_SIZE, plan.structure.layers);
         let mut film = film.with_second_set(seed);
-        for (&until, runs) in samples.iter().zip(&mut at) {
+        let look = |&until: &u32| {
             device.render_until(&interpreter, &view, &options, &mut film, until);
-            runs.push(Run {
-                image: film.image(),
-                stated: film.error().expect("at least four samples"),
-            });
+            let image = film.image();
+            let run = |part: &TileRect| Run {
+                image: part_of(&image, size[0], *part),
+                stated: film.error_within(*part).expect("at least four samples"),
+            };
+            parts.iter().map(run).collect()
+        };
+        samples.iter().map(look).collect()
+    };
+    // Small images keep few threads busy: each render has one, and there are many renders.
+    let threads = match threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        some => some,
+    };
+    let (next, done) = (AtomicU32::new(0), AtomicU32::new(0));
+    let some_renders = || -> Result<Vec<(u32, Vec<Vec<Run>>)>> {
+        let device = CpuDevice::new(1).context("starting a thread")?;
+        let mut renders = Vec::new();
+        loop {
+            let seed = next.fetch_add(1, Ordering::Relaxed);
+            if seed >= runs {
+                return Ok(renders);
+            }
+            renders.push((seed, render(&device, seed)));
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         }
-        progress(seed + 1);
-    }
-    let last = at.last().expect("some number of samples");
-    let reference = Reference::of(last.iter().map(|run| run.image.as_slice()));
-    Ok(samples
+    };
+    let renders = std::thread::scope(|scope| {
+        let started: Vec<_> = (0..threads).map(|_| scope.spawn(some_renders)).collect();
+        let renders = started.into_iter();
+        let renders = renders.map(|thread| thread.join().expect("no render panicked"));
+        renders.collect::<Result<Vec<_>>>()
+    })?;
+    let mut renders: Vec<_> = renders.into_iter().flatten().collect();
+    renders.sort_by_key(|(seed, _)| *seed);
+    let rows = parts
         .iter()
-        .zip(&at)
-        .flat_map(|(&samples, runs)| {
-            let of = |quantity| row(&plan.name, samples, quantity, runs, &reference);
-            [Quantity::Color, Quantity::Luminance].map(of)
-        })
-        .collect())
+        .enumerate()
+        .flat_map(|(part, TileRect { width, height, .. })| {
+            let runs = |look: usize| -> Vec<&Run> {
+                renders
+                    .iter()
+                    .map(|(_, looks)| &looks[look][part])
+                    .collect()
+            };
+            let reference = Reference::of(&runs(samples.len() - 1));
+            let row = |(look, &samples): (usize, &u32)| {
+                let size = [*width, *height];
+                let row = |of| row(&plan.name, samples, of, size, &runs(look), &reference);
+                [Quantity::Color, Quantity::Luminance].map(row)
+            };
+            samples.iter().enumerate().flat_map(row).collect::<Vec<_>>()
+        });
+    Ok(rows.collect())
 }
 
 /// The sum of the longest renders, from which each is compared with the mean of the others.
@@ -139,8 +207,8 @@ struct Reference {
 }
 
 impl Reference {
-    fn of<'a>(images: impl Iterator<Item = &'a [[f32; 3]]>) -> Self {
-        let images: Vec<_> = images.map(<[_]>::to_vec).collect();
+    fn of(runs: &[&Run]) -> Self {
+        let images: Vec<_> = runs.iter().map(|run| run.image.clone()).collect();
         let mut sum = vec![[0.0; 3]; images[0].len()];
         for image in &images {
             for (sum, pixel) in sum.iter_mut().zip(image) {
@@ -171,7 +239,14 @@ impl Reference {
     }
 }
 
-fn row(scene: &str, samples: u32, quantity: Quantity, runs: &[Run], reference: &Reference) -> Row {
+fn row(
+    scene: &str,
+    samples: u32,
+    quantity: Quantity,
+    size: [u32; 2],
+    runs: &[&Run],
+    reference: &Reference,
+) -> Row {
     let own = reference.own_error(quantity);
     let truths: Vec<f64> = runs
         .iter()
@@ -204,6 +279,7 @@ fn row(scene: &str, samples: u32, quantity: Quantity, runs: &[Run], reference: &
         scene: scene.to_owned(),
         samples,
         quantity,
+        size,
         runs: runs.len(),
         relmse: Estimate::of(truths.clone()),
         stated_over_true: Estimate::of(ratios.collect()),
@@ -222,6 +298,7 @@ impl Row {
             "scene": self.scene,
             "spp": self.samples,
             "quantity": self.quantity.name(),
+            "size": self.size,
             "runs": self.runs,
             "relmse": self.relmse.median,
             "stated_over_true": self.stated_over_true.median,
@@ -237,14 +314,15 @@ impl Row {
 
 /// Rows for people.
 pub fn table(rows: &[Row]) -> String {
-    let mut text = "  spp  of            relMSE  stated / true          half width  covered  distrusted  of trusted  failures distrusted\n".to_owned();
+    let mut text = "  spp  pixels     of            relMSE  stated / true          half width  covered  distrusted  of trusted  failures distrusted\n".to_owned();
     for row in rows {
         let percent = |part: f64| format!("{:.1} %", 100.0 * part);
         let maybe = |part: Option<f64>| part.map_or("-".to_owned(), percent);
         let Estimate { median, interval } = row.stated_over_true;
         text.push_str(&format!(
-            "{:>5}  {:<9}  {:>9.2e}  {median:.3} ({:.3}-{:.3})  {:>10}  {:>7}  {:>10}  {:>10}  {:>19}\n",
+            "{:>5}  {:<9}  {:<9}  {:>9.2e}  {median:.3} ({:.3}-{:.3})  {:>10}  {:>7}  {:>10}  {:>10}  {:>19}\n",
             row.samples,
+            format!("{}x{}", row.size[0], row.size[1]),
             row.quantity.name(),
             row.relmse.median,
             interval[0],

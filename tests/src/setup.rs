@@ -7,7 +7,7 @@ use residual_bvh::BuildQuality;
 use residual_device_cpu::{
     AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileRenderer, Traversal,
 };
-use residual_render::film::Film;
+use residual_render::film::{Film, Sampling};
 use residual_render::passes::RenderOptions;
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::import::{EnvironmentOptions, ImportError, ImportOptions, import};
@@ -47,6 +47,8 @@ pub struct Look {
     pub threads: usize,
     /// How far the tracer reaches.
     pub reach: f32,
+    /// How samples are spread over the image.
+    pub sampling: Sampling,
     /// Pixels along the side of a tile; `None` is the device's choice.
     pub tile_size: Option<u32>,
 }
@@ -61,6 +63,7 @@ impl Look {
             seed: 0,
             threads: 2,
             reach: f32::MAX,
+            sampling: Sampling::Uniform,
             tile_size: None,
         }
     }
@@ -132,6 +135,7 @@ impl<'a> Prepared<'a> {
             max_depth: look.max_depth,
             seed: look.seed,
             reach: look.reach,
+            sampling: look.sampling,
             ..RenderOptions::default()
         };
         let go_on = |_: residual_render::passes::Progress<'_>| ControlFlow::Continue(());

@@ -4,6 +4,7 @@
 use std::ops::ControlFlow;
 
 use residual_device_cpu::{CpuDevice, LaneCount, TileJob, TileRenderer};
+use residual_render::film::Sampling;
 use residual_render::passes::{Counters, RenderOptions};
 use residual_render::tracer::TracerOptions;
 use residual_scenegen::desc::{MaterialDesc, Projection, SceneDesc};
@@ -116,6 +117,41 @@ fn jobs_longer_than_a_stream_are_those_of_their_parts() {
         let (colors, _) = colors(&Prepared::new(&plan, lanes), &whole);
         assert_eq!(first_difference(&expected, &colors), None, "{lanes} lanes");
     }
+}
+
+/// S-10 in whole renders: the mean of many adaptive images is that of many others; and none depends on threads.
+#[test]
+fn adaptive_renders_repeat_and_are_right_on_average() {
+    let plan = planned(&fixtures::room());
+    let prepared = Prepared::new(&plan, LaneCount::native());
+    let look = |sampling, seed, threads| Look {
+        sampling,
+        seed,
+        threads,
+        ..Look::new(SIZE, 64)
+    };
+    let one = prepared.interpret(&look(Sampling::Adaptive, 0, 1));
+    let three = prepared.interpret(&look(Sampling::Adaptive, 0, 3));
+    assert_eq!(first_difference(&one.image(), &three.image()), None);
+    assert_eq!((one.error(), one.samples()), (three.error(), 64));
+    let counts = one.tiles().iter().map(|tile| tile.samples());
+    assert!(counts.clone().max() > counts.min(), "samples are spread");
+
+    let means = |sampling, first| -> Vec<f64> {
+        let seeds = first..first + 24;
+        let mean = |seed| prepared.interpret(&look(sampling, seed, 2)).mean()[1];
+        seeds.map(mean).collect()
+    };
+    let [adaptive, uniform] =
+        [means(Sampling::Adaptive, 1), means(Sampling::Uniform, 101)].map(|means| {
+            let count = means.len() as f64;
+            let mean = means.iter().sum::<f64>() / count;
+            let squares: f64 = means.iter().map(|m| (m - mean).powi(2)).sum();
+            (mean, squares / (count - 1.0) / count)
+        });
+    let error = (adaptive.1 + uniform.1).sqrt();
+    assert!(error < 0.01 * uniform.0, "{error}");
+    assert!((adaptive.0 - uniform.0).abs() < 3.0 * error);
 }
 
 #[test]

@@ -68,6 +68,27 @@ fn ambient_occlusion_in_a_corner_is_a_segment_of_the_disc() {
 }
 
 #[test]
+fn the_guaranteed_error_of_ambient_occlusion_is_not_exceeded() {
+    let plan = planned(&corner(0.02), TracerNode::AmbientOcclusion);
+    let look = |samples, seed| Look {
+        reach: 4.0,
+        seed,
+        ..Look::new(SIZE, samples)
+    };
+    let reference = render(&plan, &look(1024, 1000)).image();
+    for seed in 0..5 {
+        let film = render(&plan, &look(4, seed));
+        let squares = film.image().into_iter().zip(&reference);
+        let squares = squares.map(|(a, b)| f64::from(a[1] - b[1]).powi(2));
+        let mse = squares.sum::<f64>() / reference.len() as f64;
+        let bound = film
+            .guaranteed_mse()
+            .expect("pixels that are sampled twice");
+        assert!(mse < bound && bound < 0.25, "{mse}, at most {bound}");
+    }
+}
+
+#[test]
 fn nothing_is_occluded_where_nothing_occludes() {
     let mut b = Builder::new("floor");
     b.add(

@@ -20,6 +20,10 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         args.tier != TierArg::Interpreted,
         "--tier interpreted: a GPU runs what is made for the scene; render with --device cpu"
     );
+    ensure!(
+        !args.render.adaptive,
+        "--adaptive: a GPU takes as many samples of every pixel; render with --device cpu"
+    );
     let session = Session::new(
         &args.render,
         args.scene.scene.file_stem().unwrap_or_default(),

@@ -23,6 +23,7 @@ pub(crate) fn summary(plan: &Plan) -> SceneSummary {
         programs: plan.structure.programs.len(),
         effects: Effects::of(plan).iter().map(|e| e.to_string()).collect(),
         bytes: plan.data.memory_bytes(),
+        is_bounded: plan.structure.tracer.is_bounded(),
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use residual_device_cpu::LaneCount;
 use residual_frontend::options::Size;
+use residual_render::film::{Sampling, TileRect};
 use residual_render::sampler::AnySampler;
 
 use crate::isa::Isa;
@@ -66,6 +67,14 @@ pub(super) struct ErrorArgs {
     /// Our samplers, with commas between them
     #[arg(long, value_name = "SAMPLER", value_delimiter = ',', default_value = "sobol,independent", value_parser = sampler)]
     pub(super) sampler: Vec<AnySampler>,
+    /// How our samples are spread over the image, with commas between them: uniform, adaptive
+    #[arg(
+        long,
+        value_name = "SAMPLING",
+        value_delimiter = ',',
+        default_value = "uniform"
+    )]
+    pub(super) sampling: Vec<Sampling>,
     /// Threads of each renderer; 0 is one for each processor
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) threads: usize,
@@ -130,9 +139,31 @@ pub(super) struct CoverageArgs {
     /// Random numbers
     #[arg(long, value_name = "SAMPLER", default_value = "sobol", value_parser = sampler)]
     pub(super) sampler: AnySampler,
+    /// How samples are spread over the image: uniform, adaptive
+    #[arg(long, value_name = "SAMPLING", default_value_t = Sampling::Uniform)]
+    pub(super) sampling: Sampling,
+    /// Look at the error of this part of the image, too: left, top, width, height
+    #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
+    pub(super) crop: Option<TileRect>,
     /// Threads; 0 is one for each processor
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(super) threads: usize,
+}
+
+fn crop(text: &str) -> Result<TileRect, String> {
+    let numbers: Option<Vec<u32>> = text
+        .split(',')
+        .map(|part| part.trim().parse().ok())
+        .collect();
+    match numbers.as_deref() {
+        Some(&[x, y, width, height]) if width > 0 && height > 0 => Ok(TileRect {
+            x,
+            y,
+            width,
+            height,
+        }),
+        _ => Err("expected left, top, width and height in pixels, as in 32,16,64,48".to_owned()),
+    }
 }
 
 fn sampler(name: &str) -> Result<AnySampler, String> {

@@ -50,10 +50,14 @@ fn measure(path: &Path, args: &ErrorArgs) -> Result<()> {
     let bvh = AnyBvh::build(data, LaneCount::native(), quality);
     let device = CpuDevice::new(args.threads).context("starting threads")?;
     let mut contenders: Vec<Box<dyn Contender + '_>> = Vec::new();
-    for ((plan, renderer), &sampler) in plans.iter().zip(&renderers).zip(&args.sampler) {
+    let own = plans.iter().zip(&renderers).zip(&args.sampler);
+    for (((plan, renderer), &sampler), &sampling) in
+        own.flat_map(|own| args.sampling.iter().map(move |sampling| (own, sampling)))
+    {
         contenders.push(Box::new(Residual {
             tier: args.tier.name(),
             sampler: sampler_name(sampler),
+            sampling,
             device: &device,
             renderer: renderer.tiles(),
             view: SceneView {

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use anyhow::Result;
 use residual_device_cpu::{CpuDevice, SceneView, TileRenderer};
 use residual_frontend::process_time;
+use residual_render::film::Sampling;
 use residual_render::passes::RenderOptions;
 
 use super::contender::{Contender, Label, Rendered};
@@ -16,6 +17,8 @@ pub struct Residual<'a> {
     pub tier: &'static str,
     /// `sobol` or `independent`.
     pub sampler: &'static str,
+    /// How samples are spread over the image.
+    pub sampling: Sampling,
     /// Threads.
     pub device: &'a CpuDevice,
     /// What renders tiles.
@@ -38,7 +41,10 @@ impl Contender for Residual<'_> {
         Label {
             renderer: Self::NAME.to_owned(),
             variant: self.tier.to_owned(),
-            sampler: self.sampler.to_owned(),
+            sampler: match self.sampling {
+                Sampling::Uniform => self.sampler.to_owned(),
+                Sampling::Adaptive => format!("{}, {}", self.sampler, self.sampling),
+            },
         }
     }
 
@@ -46,6 +52,7 @@ impl Contender for Residual<'_> {
         let options = RenderOptions {
             size: self.size,
             samples: Some(samples),
+            sampling: self.sampling,
             max_depth: self.max_depth,
             seed,
             ..RenderOptions::default()

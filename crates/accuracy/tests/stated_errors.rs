@@ -54,6 +54,9 @@ fn sampled(random: &mut Random, sample: Sample, count: u64, mean: f64) -> PixelM
     moments
 }
 
+/// How samples are spread over an image that gets so many a pixel.
+type Spread = fn(samples: u64, pixel: usize) -> u64;
+
 /// What an image says of its error in red, green and blue, and what that is.
 fn image(
     random: &mut Random,
@@ -61,8 +64,22 @@ fn image(
     samples: u64,
     is_replicated: bool,
 ) -> (ErrorEstimate, f64) {
+    spread_image(
+        random,
+        sample,
+        (samples, |samples, _| samples),
+        is_replicated,
+    )
+}
+
+fn spread_image(
+    random: &mut Random,
+    sample: Sample,
+    (samples, spread): (u64, Spread),
+    is_replicated: bool,
+) -> (ErrorEstimate, f64) {
     let pixels: Vec<_> = (0..WIDTH * HEIGHT)
-        .map(|pixel| sampled(random, sample, samples, truth(pixel)))
+        .map(|pixel| sampled(random, sample, spread(samples, pixel), truth(pixel)))
         .collect();
     let blocks = (0..HEIGHT / BLOCK).flat_map(|y| (0..WIDTH / BLOCK).map(move |x| [x, y]));
     let second: Vec<_> = blocks
@@ -70,16 +87,20 @@ fn image(
             let within = (random.unit() * (BLOCK * BLOCK) as f64) as usize;
             let [x, y] = [x * BLOCK + within % BLOCK, y * BLOCK + within / BLOCK];
             let pixel = y * WIDTH + x;
+            let samples = spread(samples, pixel);
             (pixel, sampled(random, sample, samples, truth(pixel)))
         })
         .collect();
-    let of = |moments| Sampled { moments, samples };
-    let firsts: Vec<_> = pixels.iter().map(of).collect();
+    let of = |(pixel, moments)| Sampled {
+        moments,
+        samples: spread(samples, pixel),
+    };
+    let firsts: Vec<_> = pixels.iter().enumerate().map(of).collect();
     let replicates: Vec<_> = second
         .iter()
         .map(|(pixel, moments)| Replicate {
             pixel: *pixel,
-            sampled: of(moments),
+            sampled: of((*pixel, moments)),
         })
         .collect();
     let stated = ErrorEstimate::of(WIDTH, &firsts, is_replicated.then_some(&replicates[..]));
@@ -93,7 +114,7 @@ fn image(
     let errors = pixels.iter().enumerate().flat_map(|(pixel, moments)| {
         let color = colors(truth(pixel));
         [0, 1, 2].map(|k| {
-            let error = moments.mean(samples)[k] - color[k];
+            let error = moments.mean(spread(samples, pixel))[k] - color[k];
             error * error / (color[k] * color[k] + floor)
         })
     });
@@ -103,11 +124,15 @@ fn image(
 
 /// The parts of the images whose interval holds the truth, and the mean of what is stated over the mean of what is true.
 fn coverage(sample: Sample, samples: u64, is_replicated: bool) -> (f64, f64) {
-    let mut random = Random(samples);
+    spread_coverage(sample, (samples, |samples, _| samples), is_replicated)
+}
+
+fn spread_coverage(sample: Sample, spread: (u64, Spread), is_replicated: bool) -> (f64, f64) {
+    let mut random = Random(spread.0);
     let images = 300;
     let (mut held, mut stated, mut truths) = (0, 0.0, 0.0);
     for _ in 0..images {
-        let (error, truth) = image(&mut random, sample, samples, is_replicated);
+        let (error, truth) = spread_image(&mut random, sample, spread, is_replicated);
         assert_eq!(error.distrust, None);
         held += u32::from(error.relmse.low <= truth && truth <= error.relmse.high);
         stated += error.relmse.value;
@@ -129,6 +154,24 @@ fn intervals_of_independent_samples_hold_the_truth() {
 fn intervals_of_well_distributed_samples_hold_the_truth() {
     for samples in [16, 64] {
         let (held, ratio) = coverage(stratified, samples, true);
+        assert!((0.92..=0.99).contains(&held), "{samples} samples: {held}");
+        assert!((ratio - 1.0).abs() < 0.03, "{samples} samples: {ratio}");
+    }
+}
+
+/// The dark half gets four times the samples of the bright one.
+#[test]
+fn intervals_of_unequal_numbers_of_samples_hold_the_truth() {
+    let spread: Spread = |samples, pixel| {
+        let is_dark = pixel % WIDTH < WIDTH / 2;
+        if is_dark { 2 * samples } else { samples / 2 }
+    };
+    for (sample, samples) in [
+        (independent as Sample, 16),
+        (independent, 64),
+        (stratified, 32),
+    ] {
+        let (held, ratio) = spread_coverage(sample, (samples, spread), true);
         assert!((0.92..=0.99).contains(&held), "{samples} samples: {held}");
         assert!((ratio - 1.0).abs() < 0.03, "{samples} samples: {ratio}");
     }

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use residual_render::film::{Film, FilmTile, SampleSet, TILE_SIZE};
+use residual_render::film::{Film, TILE_SIZE, TilePass};
 use residual_render::passes::{
     Counters, MAX_PASS, Pass, Progress, RenderOptions, RenderReport, render_passes,
 };
@@ -60,10 +60,7 @@ impl CpuDevice {
         film: &mut Film,
         pass: Pass,
     ) -> Counters {
-        let (first, second) = film.sets_mut();
-        let mut tiles: Vec<_> = first.iter_mut().map(|t| (SampleSet::First, t)).collect();
-        tiles.extend(second);
-        self.tiles(renderer, scene, options, tiles, pass)
+        self.tiles(renderer, scene, options, film.tile_passes(pass))
     }
 
     /// Adds passes to a film until it has so many samples a pixel.
@@ -82,7 +79,7 @@ impl CpuDevice {
         }
     }
 
-    /// Adds a pass of samples to tiles of a film that has the renderer's layers.
+    /// Adds samples to tiles of a film that has the renderer's layers.
     ///
     /// # Panics
     /// If the film has others.
@@ -91,23 +88,25 @@ impl CpuDevice {
         renderer: &dyn TileRenderer,
         scene: &SceneView<'_>,
         options: &RenderOptions,
-        tiles: Vec<(SampleSet, &mut FilmTile)>,
-        pass: Pass,
+        tiles: Vec<TilePass<'_>>,
     ) -> Counters {
         let layers = renderer.layers();
         let counters = Mutex::new(Counters::default());
         self.pool.install(|| {
-            tiles.into_par_iter().for_each(|(set, tile)| {
-                assert_eq!(tile.layers(), layers, "one film, one set of layers");
-                let rect = tile.rect();
-                let job = TileJob::new(rect, set, pass, options.tracer(set));
-                let mut samples = vec![0.0; rect.area() * layers.stride() * pass.count as usize];
-                let mut did = renderer.render_tile(scene, &job, &mut samples);
-                let film_start = Instant::now();
-                tile.add(&samples);
-                did.film = film_start.elapsed().as_secs_f64();
-                *counters.lock().expect("no tile panicked") += did;
-            });
+            tiles
+                .into_par_iter()
+                .for_each(|TilePass { set, tile, pass }| {
+                    assert_eq!(tile.layers(), layers, "one film, one set of layers");
+                    let rect = tile.rect();
+                    let job = TileJob::new(rect, set, pass, options.tracer(set));
+                    let mut samples =
+                        vec![0.0; rect.area() * layers.stride() * pass.count as usize];
+                    let mut did = renderer.render_tile(scene, &job, &mut samples);
+                    let film_start = Instant::now();
+                    tile.add(&samples);
+                    did.film = film_start.elapsed().as_secs_f64();
+                    *counters.lock().expect("no tile panicked") += did;
+                });
         });
         counters.into_inner().expect("no tile panicked")
     }
@@ -122,8 +121,8 @@ impl CpuDevice {
         options: &RenderOptions,
         progress: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> (Film, RenderReport) {
-        let [width, height] = options.size;
-        let film = Film::new(width, height, self.tile_size, renderer().layers());
+        let layers = renderer().layers();
+        let film = Film::sampled_by(options.sampling, options.size, self.tile_size, layers);
         let mut film = film.with_second_set(options.seed);
         let pass = |film: &mut Film, pass| {
             Ok::<_, Infallible>(self.pass(renderer(), scene, options, film, pass))

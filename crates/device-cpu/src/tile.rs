@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use residual_bvh::{Hit, Ray};
 use residual_render::alpha::Candidate;
-use residual_render::domain::Lanes;
+use residual_render::domain::{Lanes, MAX_LANES};
 use residual_render::passes::Counters;
 use residual_render::renderer::Renderer;
 use residual_render::tracer::{Settings, Tracer};
@@ -62,10 +62,12 @@ where
     };
     let program_of = |triangle: u32| program_in(&view.buffers, triangle);
     let mut cameras = CameraRays::new(job);
-    let mut paths = PathStream::with_capacity(STREAM);
-    let mut next = PathStream::with_capacity(STREAM);
-    let mut shadows = ShadowStream::with_capacity(STREAM);
-    let mut hits = SortedHits::with_capacity(STREAM, scene.programs());
+    let all = job.rect().area() * job.samples[1] as usize;
+    let capacity = STREAM.min(all + MAX_LANES);
+    let mut paths = PathStream::with_capacity(capacity);
+    let mut next = PathStream::with_capacity(capacity);
+    let mut shadows = ShadowStream::with_capacity(capacity);
+    let mut hits = SortedHits::with_capacity(capacity, scene.programs());
     let mut counters = Counters::default();
     let mut clock = Stopwatch(Instant::now());
     let mut samples = Samples::new(samples, tracer.layers());

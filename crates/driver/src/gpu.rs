@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
 use residual_device_wgpu::{Dialect, FloatControls, Gpu, Mapping, Mode, Probe, WgpuRenderer};
 use residual_frontend::stats::WgpuReport;
-use residual_render::film::{Film, FilmTile, SampleSet, TILE_SIZE};
+use residual_render::film::{Film, FilmTile, SampleSet, TILE_SIZE, TilePass};
 use residual_render::passes::{Counters, Pass, RenderOptions};
 use residual_render::tracer::{DebugView, TracerNode};
 use residual_scenegen::plan::Plan;
@@ -180,7 +180,10 @@ impl<'a> GpuPasses<'a> {
     /// The second set of samples.
     fn second(&self, tiles: Vec<(SampleSet, &mut FilmTile)>, pass: Pass) -> Counters {
         let (renderer, scene) = (&self.interpreter, &self.view);
-        self.cpu.tiles(renderer, scene, self.options, tiles, pass)
+        let tiles = tiles.into_iter();
+        let work = tiles.map(|(set, tile)| TilePass { set, pass, tile });
+        self.cpu
+            .tiles(renderer, scene, self.options, work.collect())
     }
 
     fn on_cpu(&self, film: &mut Film, pass: Pass) -> Counters {

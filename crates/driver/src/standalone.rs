@@ -92,11 +92,12 @@ fn source(plan: &Plan, size: &[u32; 2], lanes: &str, data: &Path) -> String {
     let effects: Vec<_> = Effects::of(plan).iter().map(|e| e.to_string()).collect();
     format!(
         "{}\npub(crate) const SCENE: Option<crate::StandaloneScene> = Some(crate::StandaloneScene {{\n    \
-         name: {:?},\n    size: {size:?},\n    reach: {:?},\n    programs: {},\n    effects: &{effects:?},\n    \
+         name: {:?},\n    size: {size:?},\n    reach: {:?},\n    programs: {},\n    is_bounded: {},\n    effects: &{effects:?},\n    \
          data: include_bytes!({data:?}),\n    renderer: &Compiled,\n    lanes: Compiled::LANES,\n}});\n",
         rust::module(plan, lanes),
         plan.name,
         plan.default_reach(),
         plan.structure.programs.len(),
+        plan.structure.tracer.is_bounded(),
     )
 }

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use residual_render::film::Sampling;
 use residual_render::passes::RenderOptions;
 
 const DEFAULT_SAMPLES: u32 = 64;
@@ -24,6 +25,9 @@ pub struct RenderArgs {
     /// Stop when the relative error is below this (1%, 0.01) with 97.5 % confidence; the first of --spp, --time and --error ends
     #[arg(long, value_name = "ERROR", value_parser = relative_error)]
     pub error: Option<f64>,
+    /// Spend more samples where the image is noisy and fewer where it is not; the average is --spp
+    #[arg(long)]
+    pub adaptive: bool,
     /// Most vertices of a path: 1 is emission seen directly, 2 adds direct light
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub max_depth: u32,
@@ -57,6 +61,10 @@ impl RenderArgs {
             samples: self.spp.or(is_endless.then_some(DEFAULT_SAMPLES)),
             time: self.time,
             error: self.error,
+            sampling: match self.adaptive {
+                true => Sampling::Adaptive,
+                false => Sampling::Uniform,
+            },
             max_depth: self.max_depth,
             roulette_from: self.roulette,
             seed: self.seed,

@@ -112,8 +112,7 @@ impl<'a> Session<'a> {
             }
         };
         let before = process_time();
-        let [width, height] = options.size;
-        let film = Film::new(width, height, TILE_SIZE, layers);
+        let film = Film::sampled_by(options.sampling, options.size, TILE_SIZE, layers);
         let mut film = film.with_second_set(options.seed);
         let (report, outcome) = render_passes(options, &mut film, pass, show);
         let cpu = process_time() - before;
@@ -190,6 +189,13 @@ impl<'a> Session<'a> {
         );
         for line in precision::lines(&statistics.rendered.report.convergence) {
             eprintln!("{line}");
+        }
+        if let Some(mse) = statistics.guaranteed_mse() {
+            eprintln!(
+                "guaranteed with 95 % confidence, since no sample is brighter than white: \
+                 an error of at most {} of white, the root of the mean squared error",
+                precision::percent(mse)
+            );
         }
         if film.invalid_samples() > 0 {
             eprintln!(

@@ -21,6 +21,8 @@ pub struct SceneSummary {
     pub effects: Vec<String>,
     /// Bytes of its buffers.
     pub bytes: usize,
+    /// No sample can be brighter than white, whatever is in the scene.
+    pub is_bounded: bool,
 }
 
 /// How long the stages before rendering took.
@@ -176,6 +178,12 @@ impl Statistics<'_> {
         f64::from(film.width()) * f64::from(film.height()) * film.samples() as f64
     }
 
+    /// A mean squared error that the image does not exceed, where samples are bounded.
+    pub fn guaranteed_mse(&self) -> Option<f64> {
+        let is_bounded = self.scene.is_bounded;
+        is_bounded.then(|| self.rendered.film.guaranteed_mse())?
+    }
+
     /// As one JSON object.
     pub fn json(&self) -> Value {
         let c = &self.rendered.report.counters;
@@ -216,6 +224,7 @@ impl Statistics<'_> {
             "effects": self.scene.effects,
             "mean": film.mean(),
             "error": precision::json(&self.rendered.report.convergence),
+            "guaranteed_mse": self.guaranteed_mse(),
             "invalid_samples": film.invalid_samples(),
             "memory_mib": {
                 "scene": mib(self.scene.bytes),

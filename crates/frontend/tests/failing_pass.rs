@@ -20,6 +20,7 @@ fn what_there_was_before_is_written_and_the_failure_told() {
         spp: Some(8),
         time: None,
         error: None,
+        adaptive: false,
         max_depth: 8,
         roulette: 5,
         seed: 0,

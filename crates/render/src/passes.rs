@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use residual_accuracy::{Convergence, Measured};
 
-use crate::film::{Film, SampleSet};
+pub use crate::film::Pass;
+use crate::film::{Film, SampleSet, Sampling};
 use crate::tracer::TracerOptions;
 
 /// Passes grow until one takes about this long, so that progress is shown, time limits are kept and a wish to stop is
@@ -26,6 +27,8 @@ pub struct RenderOptions {
     /// Stop as soon as the relative error is below this one with 97.5 % confidence: the root of the relative mean squared
     /// error, as in 0.01 for 1 %.
     pub error: Option<f64>,
+    /// How samples are spread over the image.
+    pub sampling: Sampling,
     /// Most vertices a path may have; 1 is emission seen directly, 2 adds direct light.
     pub max_depth: u32,
     /// First vertex at which Russian roulette may end a path.
@@ -44,6 +47,7 @@ impl Default for RenderOptions {
             samples: Some(64),
             time: None,
             error: None,
+            sampling: Sampling::Uniform,
             max_depth: 8,
             roulette_from: 5,
             seed: 0,
@@ -150,15 +154,6 @@ impl std::ops::AddAssign for Counters {
         self.shade += o.shade;
         self.film += o.film;
     }
-}
-
-/// The samples of one pass, for every pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pass {
-    /// Index of the first.
-    pub first: u32,
-    /// How many.
-    pub count: u32,
 }
 
 /// Adds the film's error, if it has one.

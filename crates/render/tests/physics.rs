@@ -1,6 +1,7 @@
 //! Physics and numerics of the renderer's formulas, one topic a file. Seeds are fixed; families of statistical
 //! tests are judged together (Šidák), and the judges themselves are shown to reject what is wrong.
 
+mod adaptive_sampling;
 mod bsdf_albedo;
 mod bsdf_furnace;
 mod bsdf_physics;

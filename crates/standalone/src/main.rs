@@ -32,6 +32,8 @@ struct StandaloneScene {
     size: [u32; 2],
     /// How many material programs there are.
     programs: usize,
+    /// No sample can be brighter than white.
+    is_bounded: bool,
     /// The effects that are in.
     effects: &'static [&'static str],
     /// What [`SceneData::to_bytes`] wrote.
@@ -108,6 +110,7 @@ fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
         programs: scene.programs,
         effects: scene.effects.iter().map(ToString::to_string).collect(),
         bytes: data.memory_bytes(),
+        is_bounded: scene.is_bounded,
     };
     session.finish(&Statistics {
         scene: &summary,

@@ -5,6 +5,7 @@
 
 use residual_bvh::{Exact, Fast, Watertight};
 use residual_device_cpu::{AnyBvh, LaneCount, Traversal};
+use residual_render::film::Sampling;
 use residual_render::passes::RenderOptions;
 use residual_render::sampler::AnySampler;
 use residual_render::tracer::{AnyMis, TracerNode};
@@ -79,6 +80,8 @@ pub enum Axis {
     Traversal,
     /// Where random numbers come from.
     Sampler,
+    /// How samples are spread over the image.
+    Sampling,
     /// How light is weighed that lights and BSDFs find.
     Mis,
     /// How often each light is picked.
@@ -95,9 +98,10 @@ pub enum Axis {
 
 impl Axis {
     /// All but the baseline.
-    pub const SWITCHED: [Self; 8] = [
+    pub const SWITCHED: [Self; 9] = [
         Self::Traversal,
         Self::Sampler,
+        Self::Sampling,
         Self::Mis,
         Self::LightPicks,
         Self::Roulette,
@@ -112,6 +116,7 @@ impl Axis {
             Self::Baseline => "As rendered by default",
             Self::Traversal => "Precision of traversal",
             Self::Sampler => "Sampler",
+            Self::Sampling => "Where samples are spent",
             Self::Mis => "Multiple importance sampling",
             Self::LightPicks => "Light sampling",
             Self::Roulette => "Russian roulette",
@@ -127,6 +132,7 @@ impl Axis {
             Self::Baseline
             | Self::Traversal
             | Self::Sampler
+            | Self::Sampling
             | Self::Mis
             | Self::LightPicks
             | Self::Roulette
@@ -183,7 +189,8 @@ const fn row(
 #[rustfmt::skip]
 pub const CONFIGURATIONS: &[Configuration] = {
     use Axis::{
-        Baseline, Clamping, Depth, Execution, LightPicks as Picks, Mis, Roulette, Sampler, Traversal,
+        Baseline, Clamping, Depth, Execution, LightPicks as Picks, Mis, Roulette, Sampler, Sampling as Spread,
+        Traversal,
     };
     use Extent::{Full, Quick};
     &[
@@ -191,6 +198,7 @@ pub const CONFIGURATIONS: &[Configuration] = {
         row("fast", Traversal, "Möller–Trumbore in f32", Quick, |s| s.precision = TraversalPrecision::Fast),
         row("exact", Traversal, "decisions as in exact arithmetic", Quick, |s| s.precision = TraversalPrecision::Exact),
         row("independent", Sampler, "independent random numbers", Quick, |s| s.plan.sampler = AnySampler::Independent),
+        row("adaptive", Spread, "more samples where it is noisy", Quick, |s| s.render.sampling = Sampling::Adaptive),
         row("balance", Mis, "balance heuristic, not power", Full, |s| s.mis(AnyMis::BalanceHeuristic)),
         row("lights-only", Mis, "lights are sampled, not found", Quick, |s| s.mis(AnyMis::LightsOnly)),
         row("bsdf-only", Mis, "lights are found, not sampled", Quick, |s| s.mis(AnyMis::BsdfOnly)),

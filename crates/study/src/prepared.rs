@@ -128,8 +128,7 @@ impl Prepared {
             seed,
             ..self.options.clone()
         };
-        let [width, height] = options.size;
-        let mut film = Film::new(width, height, TILE_SIZE, Layers::NONE);
+        let mut film = Film::sampled_by(options.sampling, options.size, TILE_SIZE, Layers::NONE);
         let traversal = self.precision.of(&self.bvh);
         let view = SceneView {
             buffers: self.plan.data.buffers(),

@@ -2,7 +2,7 @@
 //! paths that take another turn for one.
 
 use residual_device_wgpu::{Dialect, Mapping, Mode};
-use residual_render::film::Film;
+use residual_render::film::{Film, Sampling};
 use residual_scenegen::plan::PlanOptions;
 use residual_tests::{Look, fixtures, read_scene, scenes};
 use residual_wgsl::{Arithmetic, Division, Fma, SquareRoot};
@@ -26,6 +26,7 @@ const LOOK: Look = Look {
     seed: 0,
     threads: 2,
     reach: f32::MAX,
+    sampling: Sampling::Uniform,
     tile_size: None,
 };
 

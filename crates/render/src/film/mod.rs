@@ -4,13 +4,19 @@
 //! radiance a film has the [`Layers`] that it was made for; what is kept of each is said by its
 //! [`Reduction`].
 
+mod adaptive;
+mod noise;
+mod pass;
 mod replicates;
+mod sampling;
 mod tile;
 
+pub use pass::Pass;
 pub use replicates::SampleSet;
+pub use sampling::Sampling;
 pub use tile::{FilmTile, TileRect};
 
-use residual_accuracy::{ErrorEstimate, Replicate, Sampled};
+use residual_accuracy::{ErrorEstimate, Replicate, Sampled, guaranteed_mse};
 
 use crate::layer::{Layer, Layers, Reduction, Statistic};
 
@@ -25,7 +31,21 @@ pub struct Film {
     tiles: Vec<FilmTile>,
     tile_size: u32,
     layers: Layers,
+    sampling: Sampling,
+    /// Samples a pixel of all passes so far.
+    asked: u64,
     second: Option<Box<SecondSet>>,
+}
+
+/// Samples that a tile of a film is to get.
+#[derive(Debug)]
+pub struct TilePass<'a> {
+    /// The set of samples that the tile is of.
+    pub set: SampleSet,
+    /// Which samples.
+    pub pass: Pass,
+    /// The tile.
+    pub tile: &'a mut FilmTile,
 }
 
 /// The second samples of some of a film's pixels.
@@ -59,7 +79,26 @@ impl Film {
             tiles,
             tile_size,
             layers,
+            sampling: Sampling::Uniform,
+            asked: 0,
             second: None,
+        }
+    }
+
+    /// A black film that gets its samples so; `tile_size` counts where they are spread evenly.
+    pub fn sampled_by(sampling: Sampling, size: [u32; 2], tile_size: u32, layers: Layers) -> Self {
+        let [width, height] = size;
+        match sampling {
+            Sampling::Uniform => Self::new(width, height, tile_size, layers),
+            Sampling::Adaptive => {
+                let film = Self::new(width, height, adaptive::SIDE, layers);
+                let tiles = film.tiles.into_iter().map(FilmTile::with_noises).collect();
+                Self {
+                    tiles,
+                    sampling,
+                    ..film
+                }
+            }
         }
     }
 
@@ -67,13 +106,22 @@ impl Film {
     /// is that of independent samples. Too small an image has none.
     #[must_use]
     pub fn with_second_set(mut self, seed: u32) -> Self {
-        self.second = SampleSet::second(self.width, self.height).map(|set| {
+        let largest = match self.sampling {
+            Sampling::Uniform => u32::MAX,
+            Sampling::Adaptive => adaptive::SIDE / 2,
+        };
+        self.second = SampleSet::second(self.width, self.height, largest).map(|set| {
             let SampleSet::Second { block } = set else {
                 unreachable!("the second set is one")
             };
-            // What is left at the right and bottom edges is in no block. Small tiles keep many threads busy.
+            // What is left at the right and bottom edges is in no block. Small tiles keep many threads busy; where samples are
+            // spread by noise, a tile is that of the same pixels, and gets as many.
             let (width, height) = (self.width / block, self.height / block);
-            let film = Film::new(width, height, self.tile_size.div_ceil(4), self.layers);
+            let tile_size = match self.sampling {
+                Sampling::Uniform => self.tile_size.div_ceil(4),
+                Sampling::Adaptive => adaptive::SIDE / block,
+            };
+            let film = Film::new(width, height, tile_size, self.layers);
             let seed = set.seed(seed);
             Box::new(SecondSet { set, seed, film })
         });
@@ -114,13 +162,51 @@ impl Film {
         (&mut self.tiles, second.collect())
     }
 
-    /// Samples a pixel so far; the fewest of any tile.
+    /// A pass of samples, tile by tile, of both sets: each tile gets all of it, or as many samples as its neighbors' noise says.
+    pub fn tile_passes(&mut self, pass: Pass) -> Vec<TilePass<'_>> {
+        let columns = self.width.div_ceil(self.tile_size) as usize;
+        let passes = match self.sampling {
+            Sampling::Uniform => vec![pass; self.tiles.len()],
+            Sampling::Adaptive => adaptive::passes(&self.tiles, columns, pass),
+        };
+        let sampling = self.sampling;
+        self.asked = u64::from(pass.first) + u64::from(pass.count);
+        let (first, second) = self.sets_mut();
+        let of_second = |set: SampleSet, tile: &FilmTile| match (sampling, set) {
+            (Sampling::Adaptive, SampleSet::Second { block }) => {
+                let [column, row] =
+                    [tile.rect().x, tile.rect().y].map(|k| k * block / adaptive::SIDE);
+                passes[row as usize * columns + column as usize]
+            }
+            _ => pass,
+        };
+        let second = second.into_iter().map(|(set, tile)| TilePass {
+            set,
+            pass: of_second(set, tile),
+            tile,
+        });
+        let first = first.iter_mut().zip(&passes).map(|(tile, pass)| TilePass {
+            set: SampleSet::First,
+            pass: *pass,
+            tile,
+        });
+        first
+            .chain(second)
+            .filter(|tile| tile.pass.count > 0)
+            .collect()
+    }
+
+    /// Samples a pixel so far: the fewest of any tile, or, where they are spread by noise, as many as were asked for on average.
     pub fn samples(&self) -> u64 {
-        self.tiles
-            .iter()
-            .map(|tile| tile.samples)
-            .min()
-            .unwrap_or(0)
+        match self.sampling {
+            Sampling::Uniform => self
+                .tiles
+                .iter()
+                .map(|tile| tile.samples)
+                .min()
+                .unwrap_or(0),
+            Sampling::Adaptive => self.asked,
+        }
     }
 
     /// Samples that were NaN, infinite or negative. They count as black; a healthy render has none.
@@ -221,19 +307,68 @@ impl Film {
 
     /// The estimated error; `None` below four samples a pixel.
     pub fn error(&self) -> Option<ErrorEstimate> {
-        let pixels: Vec<_> = self.sampled().collect();
+        self.error_within(self.rect())
+    }
+
+    /// The estimated error of a part of the image by itself; `None` below four samples a pixel.
+    ///
+    /// # Panics
+    /// If the part is not within the image.
+    pub fn error_within(&self, part: TileRect) -> Option<ErrorEstimate> {
+        let (pixels, replicates) = self.observed(part);
+        ErrorEstimate::of(part.width as usize, &pixels, replicates.as_deref())
+    }
+
+    /// A mean squared error that the image does not exceed with 95 % confidence, whatever light there is, if all samples lie in
+    /// [0, 1]; of the pixels in whole blocks of the second set, which are all but a few at the right and bottom edges.
+    /// `None` without a second set.
+    pub fn guaranteed_mse(&self) -> Option<f64> {
+        let (pixels, replicates) = self.observed(self.rect());
+        guaranteed_mse(&pixels, &replicates?)
+    }
+
+    fn rect(&self) -> TileRect {
+        TileRect {
+            x: 0,
+            y: 0,
+            width: self.width,
+            height: self.height,
+        }
+    }
+
+    /// The samples of the pixels in a part of the image, and the second sets of some of them, if there are any.
+    fn observed(&self, part: TileRect) -> (Vec<Sampled<'_>>, Option<Vec<Replicate<'_>>>) {
+        let TileRect {
+            x,
+            y,
+            width,
+            height,
+        } = part;
+        assert!(x + width <= self.width && y + height <= self.height);
+        let within = move |[px, py]: [u32; 2]| {
+            let inside = px >= x && py >= y && px - x < width && py - y < height;
+            inside.then(|| (py - y) as usize * width as usize + (px - x) as usize)
+        };
+        let pixels = grid(self.width, self.height)
+            .zip(self.sampled())
+            .filter_map(|(pixel, sampled)| within(pixel).map(|_| sampled))
+            .collect();
         let replicates = self.second.as_deref().map(|second| {
             let SecondSet { set, seed, film } = second;
-            let places = (0..film.height).flat_map(|y| (0..film.width).map(move |x| [x, y]));
-            let replicates = places.zip(film.sampled()).map(|(place, sampled)| {
-                let [x, y] = set.pixel(*seed, place);
-                let pixel = y as usize * self.width as usize + x as usize;
-                Replicate { pixel, sampled }
+            let places = grid(film.width, film.height).zip(film.sampled());
+            let replicates = places.filter_map(|(place, sampled)| {
+                let pixel = within(set.pixel(*seed, place))?;
+                Some(Replicate { pixel, sampled })
             });
-            replicates.collect::<Vec<_>>()
+            replicates.collect()
         });
-        ErrorEstimate::of(self.width as usize, &pixels, replicates.as_deref())
+        (pixels, replicates)
     }
+}
+
+/// Columns and rows, row by row.
+fn grid(width: u32, height: u32) -> impl Iterator<Item = [u32; 2]> {
+    (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
 }
 
 /// Mean red, green and blue.

@@ -24,10 +24,12 @@ pub enum SampleSet {
 const BLOCKS: [(u64, u32); 3] = [(1 << 18, 10), (1 << 16, 8), (0, 4)];
 
 impl SampleSet {
-    /// The second set for an image of this size; `None` if it is too small for one.
-    pub(super) fn second(width: u32, height: u32) -> Option<Self> {
+    /// The second set for an image of this size, with blocks of at most `largest` pixels along their sides; `None` if the image is
+    /// too small for one.
+    pub(super) fn second(width: u32, height: u32, largest: u32) -> Option<Self> {
         let pixels = u64::from(width) * u64::from(height);
-        let (_, block) = BLOCKS.into_iter().find(|(least, _)| pixels >= *least)?;
+        let fits = |(least, block): &(u64, u32)| pixels >= *least && *block <= largest;
+        let (_, block) = BLOCKS.into_iter().find(fits)?;
         (width >= block && height >= block).then_some(Self::Second { block })
     }
 
@@ -67,7 +69,7 @@ mod tests {
 
     #[test]
     fn every_block_has_one_pixel_anywhere_in_it() {
-        let set = SampleSet::second(320, 240).unwrap();
+        let set = SampleSet::second(320, 240, u32::MAX).unwrap();
         assert_eq!(set, SampleSet::Second { block: 8 });
         let mut seen = [[0; 8]; 8];
         for (x, y) in (0..80).flat_map(|x| (0..60).map(move |y| (x, y))) {
@@ -80,7 +82,8 @@ mod tests {
             seen.as_flattened().iter().all(|n| (32..=118).contains(n)),
             "{seen:?}"
         );
-        assert_eq!(SampleSet::second(3, 480), None);
+        assert_eq!(SampleSet::second(3, 480, u32::MAX), None);
+        assert_eq!(SampleSet::second(1000, 480, 8), Some(set));
         assert_eq!(SampleSet::First.pixel(1, [5, 6]), [5, 6]);
     }
 }

@@ -2,6 +2,7 @@
 
 use residual_accuracy::{PixelMoments, SampleIndex};
 
+use super::noise::Noises;
 use crate::layer::{Layer, Layers, Reduction};
 
 /// A rectangle of pixels.
@@ -34,6 +35,8 @@ pub struct FilmTile {
     pub(super) channels: Vec<f64>,
     pub(super) samples: u64,
     pub(super) invalid: u64,
+    /// Read where samples are spent by it.
+    noises: Option<Noises>,
 }
 
 impl FilmTile {
@@ -45,12 +48,34 @@ impl FilmTile {
             channels: vec![0.0; rect.area() * (layers.stride() - Layers::RADIANCE)],
             samples: 0,
             invalid: 0,
+            noises: None,
         }
+    }
+
+    /// The same tile, whose noise is read on the way.
+    pub(super) fn with_noises(self) -> Self {
+        Self {
+            noises: Some(Noises::default()),
+            ..self
+        }
+    }
+
+    /// The noise so far.
+    ///
+    /// # Panics
+    /// If it is not read.
+    pub(super) fn noises(&self) -> &Noises {
+        self.noises.as_ref().expect("a tile whose noise is read")
     }
 
     /// Where it lies.
     pub fn rect(&self) -> TileRect {
         self.rect
+    }
+
+    /// Samples of each of its pixels so far.
+    pub fn samples(&self) -> u64 {
+        self.samples
     }
 
     /// What its pixels keep beside radiance.
@@ -82,6 +107,9 @@ impl FilmTile {
             }
             if stride > Layers::RADIANCE {
                 self.add_channels(sample);
+            }
+            if let Some(noises) = &mut self.noises {
+                noises.note(&self.pixels, self.samples);
             }
         }
     }

@@ -22,6 +22,13 @@ pub enum TracerNode {
     Debug(DebugView),
 }
 
+impl TracerNode {
+    /// Its samples lie in [0, 1], whatever is in the scene.
+    pub fn is_bounded(self) -> bool {
+        matches!(self, Self::AmbientOcclusion)
+    }
+}
+
 impl Default for TracerNode {
     fn default() -> Self {
         Self::Path(AnyMis::default())
