@@ -57,12 +57,12 @@ pub struct ErrorEstimate {
 }
 
 /// Below this many pixels that carry the error in effect, it has heavy tails.
-const FEWEST_CARRIERS: f64 = 400.0;
+const FEWEST_CARRIERS: f64 = 600.0;
 /// Above this part of the estimate, the correction for noisy means is too large to trust what is left.
 const LARGEST_CORRECTION: f64 = 0.07;
 /// Above this error, pixels are so noisy that what the correction leaves is large, too: 7 to 10 % of the error in rooms at 16
 /// samples per pixel.
-const LARGEST_NOISE: f64 = 0.03;
+const LARGEST_NOISE: f64 = 0.02;
 /// Fewest replicates from which a standard error can be had.
 const FEWEST_REPLICATES: usize = 16;
 /// Above this standard error, relative to the estimate, its distribution is not known well enough for an interval.
