@@ -1,19 +1,87 @@
 //! The files that OBJ and MTL files name.
+//!
+//! They come from systems that ignore case, separate folders by backslashes and encode names in their own way, and
+//! from machines whose folders are not here.
 
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Finds a file: backslashes are separators, and where nothing has the exact
-/// name, one that differs only in case will do (these files come from systems that ignore case).
-pub(super) fn find_loosely(name: &str, folder: &Path) -> Option<PathBuf> {
-    let name = name.trim().replace('\\', "/");
-    if name.is_empty() {
-        return None;
+use encoding_rs::{BIG5, EUC_JP, EUC_KR, GB18030, SHIFT_JIS, WINDOWS_1251};
+
+use super::names::readings;
+use super::text::legacy_bytes;
+
+/// Folders in which exporters put images beside a model.
+const IMAGE_FOLDERS: [&str; 8] = [
+    "textures",
+    "texture",
+    "maps",
+    "images",
+    "tex",
+    "../textures",
+    "../images",
+    "../maps",
+];
+
+/// Finds a file where its name says, but for case, slashes, quotes and comments.
+pub(super) fn find(text: &str, folders: &[&Path]) -> Option<PathBuf> {
+    readings(text).find_map(|name| folders.iter().find_map(|folder| find_named(name, folder)))
+}
+
+/// Finds a file elsewhere, where the last parts of its path lead beside the file that names it, or into a folder of
+/// images there. What is found is a guess.
+pub(super) fn guess(text: &str, folders: &[&Path]) -> Option<PathBuf> {
+    let in_folders = |name: &str| {
+        let beside = folders.iter().find_map(|folder| find_named(name, folder));
+        beside.or_else(|| {
+            let pairs = folders
+                .iter()
+                .flat_map(|folder| IMAGE_FOLDERS.map(|images| (folder, images)));
+            pairs
+                .into_iter()
+                .find_map(|(folder, images)| find_named(&format!("{images}/{name}"), folder))
+        })
+    };
+    readings(text).find_map(|name| {
+        let name = name.replace('\\', "/");
+        let parts: Vec<&str> = name.split('/').filter(|part| !part.is_empty()).collect();
+        (0..parts.len()).find_map(|start| in_folders(&parts[start..].join("/")))
+    })
+}
+
+fn find_named(name: &str, folder: &Path) -> Option<PathBuf> {
+    encoded_names(name).into_iter().find_map(|name| {
+        let path = folder.join(&name);
+        if path.is_file() {
+            return Some(path);
+        }
+        find_loosely(name.to_str()?, folder)
+    })
+}
+
+/// A name, and what its bytes may have meant if it comes from a file of a legacy code page.
+fn encoded_names(name: &str) -> Vec<OsString> {
+    let mut names = vec![OsString::from(name)];
+    if name.is_ascii() {
+        return names;
     }
-    let exact = folder.join(&name);
-    if exact.is_file() {
-        return Some(exact);
+    let Some(bytes) = legacy_bytes(name) else {
+        return names;
+    };
+    for encoding in [SHIFT_JIS, GB18030, BIG5, EUC_KR, EUC_JP, WINDOWS_1251] {
+        if let Some(name) = encoding.decode_without_bom_handling_and_without_replacement(&bytes) {
+            names.push(OsString::from(name.into_owned()));
+        }
     }
+    #[cfg(unix)]
+    names.push(std::os::unix::ffi::OsStringExt::from_vec(bytes));
+    names
+}
+
+/// Backslashes are separators, and where nothing has the exact name, one that differs only in case will do.
+fn find_loosely(name: &str, folder: &Path) -> Option<PathBuf> {
+    let name = name.replace('\\', "/");
     let mut path = if name.starts_with('/') {
         PathBuf::from("/")
     } else {
@@ -27,19 +95,18 @@ pub(super) fn find_loosely(name: &str, folder: &Path) -> Option<PathBuf> {
         path = if part == ".." || next.exists() {
             next
         } else {
-            let mut matches: Vec<PathBuf> = fs::read_dir(&path)
+            let folder = if path.as_os_str().is_empty() {
+                Path::new(".")
+            } else {
+                &path
+            };
+            let lower = part.to_lowercase();
+            fs::read_dir(folder)
                 .ok()?
                 .filter_map(Result::ok)
-                .filter(|entry| {
-                    entry
-                        .file_name()
-                        .to_string_lossy()
-                        .eq_ignore_ascii_case(part)
-                })
+                .filter(|entry| entry.file_name().to_string_lossy().to_lowercase() == lower)
                 .map(|entry| entry.path())
-                .collect();
-            matches.sort();
-            matches.into_iter().next()?
+                .min()?
         };
     }
     path.is_file().then_some(path)

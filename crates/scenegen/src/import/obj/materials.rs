@@ -1,12 +1,12 @@
-//! The materials of the libraries, read as models ask for them.
+//! The materials of the libraries, read as parts of the geometry ask for them.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::material;
 use super::mtl::MtlMaterial;
 use super::statements::Statements;
 use super::textures::Textures;
+use super::{energy, material};
 use crate::desc::{ImageDesc, MaterialDesc, TextureDesc};
 use crate::import::warnings::Warnings;
 
@@ -15,17 +15,20 @@ pub(super) struct Materials<'a> {
     library: &'a [MtlMaterial],
     textures: Textures<'a>,
     list: Vec<MaterialDesc>,
+    /// Where those of `list` stand.
+    places: Vec<String>,
     /// From indices in `library`, of which `None` is a grey default, to those in `list`.
     indices: BTreeMap<Option<usize>, usize>,
 }
 
 impl<'a> Materials<'a> {
-    /// None yet; textures are looked for from `folder`.
+    /// None yet; textures are looked for from `folder` if a library's own has none.
     pub(super) fn new(library: &'a [MtlMaterial], folder: &'a Path) -> Self {
         Self {
             library,
             textures: Textures::new(folder),
             list: Vec::new(),
+            places: Vec::new(),
             indices: BTreeMap::new(),
         }
     }
@@ -36,7 +39,6 @@ impl<'a> Materials<'a> {
         index: Option<usize>,
         warnings: &mut Warnings,
     ) -> (usize, &MaterialDesc) {
-        let index = index.filter(|&index| index < self.library.len());
         let in_scene = match self.indices.get(&index) {
             Some(&known) => known,
             None => {
@@ -45,6 +47,7 @@ impl<'a> Materials<'a> {
                 let statements = Statements::new(source, warnings);
                 let material = material::read(statements, &mut self.textures);
                 self.list.push(material);
+                self.places.push(source.place());
                 self.indices.insert(index, self.list.len() - 1);
                 self.list.len() - 1
             }
@@ -63,10 +66,11 @@ impl<'a> Materials<'a> {
 
     /// The materials, their textures, and the images decoded.
     pub(super) fn finish(
-        self,
+        mut self,
         warnings: &mut Warnings,
     ) -> (Vec<MaterialDesc>, Vec<TextureDesc>, Vec<ImageDesc>) {
         let (textures, images) = self.textures.finish(warnings);
+        energy::conserve(&mut self.list, &self.places, &textures, &images, warnings);
         (self.list, textures, images)
     }
 }

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::find::find_loosely;
+use super::find::{find, guess};
 use super::map_statement::MapStatement;
-use crate::desc::{Filter, ImageDesc, TextureDesc, TextureUse, UvTransform};
+use super::statements::Statements;
+use crate::desc::{Filter, ImageDesc, Texels, TextureDesc, TextureUse, UvTransform};
 use crate::import::files;
 use crate::import::images::{self, ImageRequest, ImageRole};
 use crate::import::warnings::Warnings;
@@ -20,8 +21,19 @@ pub(super) struct Textures<'a> {
     image_indices: BTreeMap<PathBuf, usize>,
 }
 
+/// What the texels of an image look like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Looks {
+    /// Directions: blue on average, with red and green near a half.
+    Normals,
+    /// Some texels are transparent.
+    Transparent,
+    /// Anything else, or nothing that can be read.
+    Other,
+}
+
 impl<'a> Textures<'a> {
-    /// None yet; files are looked for from `folder`.
+    /// None yet; files are looked for from `folder`, if the library's own has none.
     pub(super) fn new(folder: &'a Path) -> Self {
         Self {
             folder,
@@ -31,10 +43,15 @@ impl<'a> Textures<'a> {
         }
     }
 
-    /// Registers a use of a texture by the material at `place`.
-    pub(super) fn add(&mut self, map: &MapStatement, role: ImageRole, place: &str) -> TextureUse {
+    /// Registers a use of a texture.
+    pub(super) fn add(
+        &mut self,
+        map: &MapStatement,
+        role: ImageRole,
+        user: &mut Statements<'_>,
+    ) -> TextureUse {
         let texture = TextureDesc {
-            image: self.image(&map.file, role, place),
+            image: self.image(&map.file, role, user),
             wrap: [map.wrap; 2],
             filter: Filter::Linear,
         };
@@ -50,8 +67,27 @@ impl<'a> Textures<'a> {
         }
     }
 
-    fn image(&mut self, file: &str, role: ImageRole, place: &str) -> usize {
-        let path = find_loosely(file, self.folder);
+    /// What an image looks like, for statements whose meaning depends on that.
+    pub(super) fn look_at(&self, map: &MapStatement, user: &Statements<'_>) -> Looks {
+        let Some(Location { path, .. }) = self.locate(&map.file, user) else {
+            return Looks::Other;
+        };
+        let decoded =
+            files::read(&path).and_then(|bytes| images::decode_one(&bytes, extension(&path)));
+        decoded.map_or(Looks::Other, |decoded| looks(&decoded.texels))
+    }
+
+    fn image(&mut self, file: &str, role: ImageRole, user: &mut Statements<'_>) -> usize {
+        let location = self.locate(file, user);
+        if let Some(Location {
+            path,
+            is_guess: true,
+        }) = &location
+        {
+            let shown = path.strip_prefix(self.folder).unwrap_or(path).display();
+            user.warn(format!("\"{file}\" is not there; \"{shown}\" is used"));
+        }
+        let path = location.map(|location| location.path);
         let key = path.clone().unwrap_or_else(|| PathBuf::from(file));
         if let Some(&known) = self.image_indices.get(&key) {
             return known;
@@ -60,21 +96,58 @@ impl<'a> Textures<'a> {
             Some(path) => files::read(&path).map(Cow::Owned),
             None => Err("is not there".into()),
         };
-        let extension = key.extension().and_then(|extension| extension.to_str());
         self.requests.push(ImageRequest {
             name: file.to_owned(),
-            place: format!("{place} \"{file}\""),
+            place: format!("{} \"{file}\"", user.place),
             bytes,
-            extension: extension.map(str::to_owned),
+            extension: extension(&key).map(str::to_owned),
             role,
         });
         self.image_indices.insert(key, self.requests.len() - 1);
         self.requests.len() - 1
     }
 
+    fn locate(&self, file: &str, user: &Statements<'_>) -> Option<Location> {
+        let folders = [&*user.material().folder, self.folder];
+        let location = |is_guess| move |path| Location { path, is_guess };
+        let named = find(file, &folders).map(location(false));
+        named.or_else(|| guess(file, &folders).map(location(true)))
+    }
+
     /// The textures, and the images decoded.
     pub(super) fn finish(self, warnings: &mut Warnings) -> (Vec<TextureDesc>, Vec<ImageDesc>) {
         (self.list, images::decode_all(self.requests, warnings))
+    }
+}
+
+/// Where an image is.
+struct Location {
+    path: PathBuf,
+    /// Whether its name says so only in part.
+    is_guess: bool,
+}
+
+fn extension(path: &Path) -> Option<&str> {
+    path.extension().and_then(|extension| extension.to_str())
+}
+
+fn looks(texels: &Texels) -> Looks {
+    let Texels::Rgba8(texels) = texels else {
+        return Looks::Other;
+    };
+    if texels.iter().any(|texel| texel[3] < 255) {
+        return Looks::Transparent;
+    }
+    let mut sums = [0_u64; 3];
+    for texel in texels {
+        for (sum, &channel) in sums.iter_mut().zip(texel) {
+            *sum += u64::from(channel);
+        }
+    }
+    let [r, g, b] = sums.map(|sum| sum / texels.len() as u64);
+    match (96..160).contains(&r) && (96..160).contains(&g) && b > 192 {
+        true => Looks::Normals,
+        false => Looks::Other,
     }
 }
 

@@ -1,0 +1,138 @@
+//! Inputs of materials: numbers, colours and directions with their textures.
+
+use super::statements::Statements;
+use super::textures::{Looks, Textures};
+use crate::desc::{ColorInput, NormalMap, ScalarInput, TextureUse};
+use crate::import::images::ImageRole;
+
+/// Reads the inputs of one material.
+pub(super) struct Inputs<'r, 'a> {
+    /// What it says.
+    pub(super) statements: Statements<'r>,
+    /// Those of all materials.
+    pub(super) textures: &'r mut Textures<'a>,
+}
+
+impl Inputs<'_, '_> {
+    /// A colour and its texture; without a colour, 1 where there is a texture and `default` elsewhere.
+    pub(super) fn color(
+        &mut self,
+        key: &'static str,
+        map_key: &'static str,
+        default: f32,
+    ) -> ColorInput {
+        let map = self.statements.map(map_key, ImageRole::Factors);
+        let texture = map.map(|map| {
+            self.textures
+                .add(&map, ImageRole::Factors, &mut self.statements)
+        });
+        let mut given = self.statements.color(key);
+        if texture.is_some() && given == Some([0.0; 3]) {
+            self.statements
+                .warn(format!("{key} 0 would make {map_key} black; 1 is used"));
+            given = None;
+        }
+        let default = if texture.is_some() { 1.0 } else { default };
+        let factor = given.unwrap_or([default; 3]);
+        if factor.iter().any(|&value| value < 0.0) {
+            self.statements
+                .warn(format!("{key} has negative values; 0 is used"));
+        }
+        ColorInput {
+            factor: factor.map(|value| value.max(0.0)),
+            texture,
+        }
+    }
+
+    /// A number from 0 to 1.
+    pub(super) fn fraction(&mut self, key: &'static str) -> Option<f32> {
+        let value = self.statements.number(key)?;
+        if !(0.0..=1.0).contains(&value) {
+            self.statements
+                .warn(format!("{key} {value} is outside of 0 to 1 and clamped"));
+        }
+        Some(value.clamp(0.0, 1.0))
+    }
+
+    /// The same with a texture; without a number, 1 where there is a texture and `default` elsewhere.
+    pub(super) fn fraction_input(
+        &mut self,
+        key: &'static str,
+        map_key: &'static str,
+        default: f32,
+    ) -> ScalarInput {
+        let texture = self.scalar_map(map_key);
+        let default = if texture.is_some() { 1.0 } else { default };
+        let factor = self.fraction(key).unwrap_or(default);
+        ScalarInput { factor, texture }
+    }
+
+    pub(super) fn at_most_1(&mut self, key: &str, color: [f32; 3]) -> [f32; 3] {
+        let clamped = color.map(|value| value.clamp(0.0, 1.0));
+        if clamped != color {
+            self.statements.warn(format!(
+                "{key} has values outside of 0 to 1, which are clamped"
+            ));
+        }
+        clamped
+    }
+
+    /// A texture with the channel that is read.
+    pub(super) fn scalar_map(&mut self, key: &'static str) -> Option<(TextureUse, usize)> {
+        let map = self.statements.map(key, ImageRole::Factors)?;
+        let texture = self
+            .textures
+            .add(&map, ImageRole::Factors, &mut self.statements);
+        Some((texture, map.channel.unwrap_or(0)))
+    }
+
+    /// `map_d`. Masks are grey images, except where the colour's own alpha is meant or the image has one.
+    pub(super) fn alpha_map(&mut self) -> Option<(TextureUse, usize)> {
+        let map = self.statements.map("map_d", ImageRole::Factors)?;
+        let has_alpha = || {
+            self.statements.name_one_file("map_d", "map_kd")
+                || self.textures.look_at(&map, &self.statements) == Looks::Transparent
+        };
+        let channel = map
+            .channel
+            .unwrap_or_else(|| if has_alpha() { 3 } else { 0 });
+        let texture = self
+            .textures
+            .add(&map, ImageRole::Factors, &mut self.statements);
+        Some((texture, channel))
+    }
+
+    /// `norm`, or a bump map that is a map of normals, as some programs write them.
+    pub(super) fn normal_map(&mut self) -> Option<NormalMap> {
+        let keys = ["norm", "map_bump", "bump"];
+        let key = keys.into_iter().find(|key| self.statements.has(key))?;
+        let map = self.statements.map(key, ImageRole::Normals)?;
+        if key != "norm" && self.textures.look_at(&map, &self.statements) != Looks::Normals {
+            self.statements
+                .warn(format!("{key}: height maps are not supported and ignored"));
+            return None;
+        }
+        Some(NormalMap {
+            texture: self
+                .textures
+                .add(&map, ImageRole::Normals, &mut self.statements),
+            scale: map.bump_scale.unwrap_or(1.0),
+        })
+    }
+}
+
+/// A number without a texture.
+pub(super) fn constant(factor: f32) -> ScalarInput {
+    ScalarInput {
+        factor,
+        texture: None,
+    }
+}
+
+/// A grey without a texture.
+pub(super) fn uniform(factor: f32) -> ColorInput {
+    ColorInput {
+        factor: [factor; 3],
+        texture: None,
+    }
+}
