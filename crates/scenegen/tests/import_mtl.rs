@@ -357,7 +357,7 @@ fn normal_maps_get_tangents_and_bump_maps_a_warning() {
 
 #[test]
 fn texture_options_do_not_hide_the_file() {
-    let (tiled, scene) = material("map_Kd -s 2 4 -o 0.5 0.25 -clamp on -mm 0 1 kd.png");
+    let (tiled, scene) = material("map_Kd -s 2 4 -o 0.5 0.25 -clamp on -mm 0.5 1 kd.png");
     let texture = phong(&tiled).diffuse.texture.clone().unwrap();
     assert_eq!(
         texture.transform,
@@ -385,4 +385,13 @@ fn broken_numbers_cost_one_statement_and_not_the_library() {
         scene.warnings
     );
     assert!(warns(&scene, "a.mtl line 1", "ns"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn a_gain_is_a_factor_of_colours() {
+    let (darker, scene) = material("Kd 1 0.5 0\nmap_Kd -mm 0 0.5 white.png");
+    assert_eq!(phong(&darker).diffuse.factor, [0.5, 0.25, 0.0]);
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let (_, scene) = material("map_d -mm 0 0.5 white.png");
+    assert!(warns(&scene, "m", "-mm of \"white.png\" is ignored"));
 }

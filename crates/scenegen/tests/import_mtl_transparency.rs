@@ -125,37 +125,43 @@ fn a_transmission_colour_is_glass() {
 }
 
 #[test]
-fn glass_with_colour_and_dissolve_is_partly_glass() {
-    for statements in [
-        "illum 9\nd 0.25\nKd 0 1 0\nNi 1.3",
-        "illum 4\nTr 0.75\nKd 0 1 0\nNi 1.3",
-        "illum 6\nd 0.25\nKd 0 1 0\nmap_Kd white.png\nKs 1 1 1\nNi 1.3",
+fn glass_has_the_colour_of_kd_as_far_as_it_is_opaque() {
+    for (statements, expected) in [
+        ("illum 9\nd 0.25\nKd 0 1 0", [0.75, 1.0, 0.75]),
+        ("illum 4\nTr 0.75\nKd 0 1 0.5", [0.75, 1.0, 0.875]),
+        (
+            "illum 6\nd 0.5\nKd 0 1 1\nTf 0.5 0.5 1\nKs 1 1 1",
+            [0.25, 0.5, 1.0],
+        ),
+        ("illum 7\nd 0.25\nKd 0 0 0", [1.0; 3]),
+        ("illum 7\nd 0\nKs 1 1 1\nNs 1000", [1.0; 3]),
     ] {
         let (material, scene) = material(statements);
-        let SurfaceDesc::MetallicRoughness(surface) = &material.surface else {
+        let SurfaceDesc::Dielectric { transmittance, .. } = material.surface else {
             panic!("{statements}: {material:?}")
         };
-        assert_eq!(
-            (surface.transmission.factor, surface.ior, surface.solid),
-            (0.75, 1.3, true)
-        );
-        assert_eq!(surface.base_color.factor, [0.0, 1.0, 0.0]);
-        assert_eq!(
-            surface.base_color.texture.is_some(),
-            statements.contains("map_Kd")
-        );
-        assert_eq!(material.alpha_mode, AlphaMode::Opaque);
+        assert_eq!(transmittance, expected, "{statements}");
         assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     }
-    // Black glass would be opaque; it is clear.
-    let (black, _) = material("illum 7\nd 0.25\nKd 0 0 0");
-    assert!(matches!(
-        black.surface,
-        SurfaceDesc::Dielectric {
-            transmittance: [1.0, 1.0, 1.0],
-            ..
-        }
-    ));
+}
+
+#[test]
+fn maps_belong_to_surfaces() {
+    for (statements, opacity) in [
+        ("illum 9\nd 0.25\nmap_Kd kd.png\nNi 1.45", 0.25),
+        ("illum 7\nmap_Kd kd.png", 1.0),
+        ("illum 4\nTf 0.5 0.5 0.5\nmap_Kd kd.png", 1.0),
+        ("illum 6\nd 1\nmap_d ks.png", 1.0),
+    ] {
+        let (material, scene) = material(statements);
+        phong(&material);
+        assert_eq!(material.alpha.factor, opacity, "{statements}");
+        assert!(
+            warns(&scene, "m", "is for surfaces"),
+            "{statements}: {:?}",
+            scene.warnings
+        );
+    }
 }
 
 #[test]

@@ -138,3 +138,47 @@ fn decimal_commas_are_decimal_points() {
         scene.warnings
     );
 }
+
+/// Whatever a byte becomes, the end is a scene or an error.
+#[test]
+fn mutated_files_end_in_a_scene_or_an_error() {
+    let obj = "mtllib \"a.mtl\" b.mtl\n\u{feff}v 0 0 0 1 0.5 0\nv 1 0 0\nv 1,5 1 0 1\nv 0 1 0\nvt 0 0\nvt 1 0 0\nvn 0 0 1\n\
+               s 1\nusemtl m # x\nf 1/1/1 2/2 3//1 \\\n-1\ng a b\ns off\nusemtl n\nf -4 -3 -2\nl 1 2\n";
+    let mtl = "newmtl m\nKd 0 0 0\nmap_Kd -s 2 2 2 -o 0 1 \"kd.png\" -bm 1\nTr 1\nnewmtl n\nKs 1 1 1\nNs 5\nillum 7\nd -halo 0.5\n\
+               Tf xyz 1 1 1\nmap_Bump directions.png\nPr 0.5\n";
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let folder = folder(&[("a.obj", obj), ("a.mtl", mtl)]);
+    let (mut scenes, mut triangles) = (0, 0);
+    for _ in 0..500 {
+        for (name, text) in [("a.obj", obj), ("a.mtl", mtl)] {
+            let mut bytes = text.as_bytes().to_vec();
+            for _ in 0..random(4) {
+                let index = random(bytes.len());
+                match random(3) {
+                    0 => bytes[index] = random(256) as u8,
+                    1 => drop(bytes.remove(index)),
+                    _ => bytes.insert(index, b"\\\r\n#/-. \"9\0"[random(10)]),
+                }
+            }
+            std::fs::write(folder.path().join(name), bytes).unwrap();
+        }
+        if let Ok(scene) = import(&folder.path().join("a.obj"), &ImportOptions::default()) {
+            scenes += 1;
+            triangles += scene
+                .meshes
+                .iter()
+                .map(|mesh| mesh.triangles.len())
+                .sum::<usize>();
+        }
+    }
+    assert!(
+        scenes > 475 && triangles > 500,
+        "{scenes} scenes of {triangles} triangles"
+    );
+}

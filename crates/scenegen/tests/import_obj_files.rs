@@ -141,6 +141,19 @@ fn files_named_in_code_pages_are_found() {
     }
 }
 
+/// Files that were packed on a Mac have accents as characters of their own.
+#[test]
+fn accents_may_be_composed_in_another_way() {
+    let obj = format!("mtllib a.mtl\n{SQUARE}usemtl \u{d6}l\n{FACE}");
+    let folder = folder(&[
+        ("a.obj", &*obj),
+        ("a.mtl", "newmtl O\u{308}l\nmap_Kd \u{d6}l.png\n"),
+    ]);
+    write(folder.path(), "O\u{308}l.png", &png([7, 0, 0, 255]));
+    let scene = import(&folder.path().join("a.obj"), &ImportOptions::default()).unwrap();
+    assert_eq!(red(&scene, 0), 7, "{:?}", scene.warnings);
+}
+
 #[test]
 fn libraries_are_found_however_they_are_named() {
     let square = |mtllib: &str| format!("{mtllib}\n{SQUARE}usemtl m\n{FACE}");

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use encoding_rs::{BIG5, EUC_JP, EUC_KR, GB18030, SHIFT_JIS, WINDOWS_1251};
 
-use super::names::readings;
+use super::names::{comparable, readings};
 use super::text::legacy_bytes;
 
 /// Folders in which exporters put images beside a model.
@@ -23,6 +23,9 @@ const IMAGE_FOLDERS: [&str; 8] = [
     "../images",
     "../maps",
 ];
+
+/// How many parts of a path may lead to a file from here.
+const MAX_PARTS: usize = 6;
 
 /// Finds a file where its name says, but for case, slashes, quotes and comments.
 pub(super) fn find(text: &str, folders: &[&Path]) -> Option<PathBuf> {
@@ -46,7 +49,8 @@ pub(super) fn guess(text: &str, folders: &[&Path]) -> Option<PathBuf> {
     readings(text).find_map(|name| {
         let name = name.replace('\\', "/");
         let parts: Vec<&str> = name.split('/').filter(|part| !part.is_empty()).collect();
-        (0..parts.len()).find_map(|start| in_folders(&parts[start..].join("/")))
+        let longest = parts.len().saturating_sub(MAX_PARTS);
+        (longest..parts.len()).find_map(|start| in_folders(&parts[start..].join("/")))
     })
 }
 
@@ -79,7 +83,8 @@ fn encoded_names(name: &str) -> Vec<OsString> {
     names
 }
 
-/// Backslashes are separators, and where nothing has the exact name, one that differs only in case will do.
+/// Backslashes are separators, and where nothing has the exact name, one that differs only in case, or
+/// in how accents are composed, will do.
 fn find_loosely(name: &str, folder: &Path) -> Option<PathBuf> {
     let name = name.replace('\\', "/");
     let mut path = if name.starts_with('/') {
@@ -100,11 +105,11 @@ fn find_loosely(name: &str, folder: &Path) -> Option<PathBuf> {
             } else {
                 &path
             };
-            let lower = part.to_lowercase();
+            let wanted = comparable(part);
             fs::read_dir(folder)
                 .ok()?
                 .filter_map(Result::ok)
-                .filter(|entry| entry.file_name().to_string_lossy().to_lowercase() == lower)
+                .filter(|entry| comparable(&entry.file_name().to_string_lossy()) == wanted)
                 .map(|entry| entry.path())
                 .min()?
         };

@@ -1,5 +1,6 @@
 //! Inputs of materials: numbers, colours and directions with their textures.
 
+use super::map_statement::MapStatement;
 use super::statements::Statements;
 use super::textures::{Looks, Textures};
 use crate::desc::{ColorInput, NormalMap, ScalarInput, TextureUse};
@@ -22,6 +23,7 @@ impl Inputs<'_, '_> {
         default: f32,
     ) -> ColorInput {
         let map = self.statements.map(map_key, ImageRole::Factors);
+        let gain = map.as_ref().map_or(1.0, |map| map.gain);
         let texture = map.map(|map| {
             self.textures
                 .add(&map, ImageRole::Factors, &mut self.statements)
@@ -33,7 +35,7 @@ impl Inputs<'_, '_> {
             given = None;
         }
         let default = if texture.is_some() { 1.0 } else { default };
-        let factor = given.unwrap_or([default; 3]);
+        let factor = given.unwrap_or([default; 3]).map(|value| value * gain);
         if factor.iter().any(|&value| value < 0.0) {
             self.statements
                 .warn(format!("{key} has negative values; 0 is used"));
@@ -67,6 +69,7 @@ impl Inputs<'_, '_> {
         ScalarInput { factor, texture }
     }
 
+    /// A colour without values outside of 0 to 1.
     pub(super) fn at_most_1(&mut self, key: &str, color: [f32; 3]) -> [f32; 3] {
         let clamped = color.map(|value| value.clamp(0.0, 1.0));
         if clamped != color {
@@ -80,26 +83,29 @@ impl Inputs<'_, '_> {
     /// A texture with the channel that is read.
     pub(super) fn scalar_map(&mut self, key: &'static str) -> Option<(TextureUse, usize)> {
         let map = self.statements.map(key, ImageRole::Factors)?;
-        let texture = self
-            .textures
-            .add(&map, ImageRole::Factors, &mut self.statements);
+        let texture = self.scalar_texture(&map);
         Some((texture, map.channel.unwrap_or(0)))
     }
 
     /// `map_d`. Masks are grey images, except where the colour's own alpha is meant or the image has one.
     pub(super) fn alpha_map(&mut self) -> Option<(TextureUse, usize)> {
         let map = self.statements.map("map_d", ImageRole::Factors)?;
-        let has_alpha = || {
-            self.statements.name_one_file("map_d", "map_kd")
-                || self.textures.look_at(&map, &self.statements) == Looks::Transparent
+        let channel = match map.channel {
+            Some(channel) => channel,
+            None if self.statements.name_one_file("map_d", "map_kd") => 3,
+            None if self.textures.look_at(&map, &self.statements) == Looks::Transparent => 3,
+            None => 0,
         };
-        let channel = map
-            .channel
-            .unwrap_or_else(|| if has_alpha() { 3 } else { 0 });
-        let texture = self
-            .textures
-            .add(&map, ImageRole::Factors, &mut self.statements);
-        Some((texture, channel))
+        Some((self.scalar_texture(&map), channel))
+    }
+
+    fn scalar_texture(&mut self, map: &MapStatement) -> TextureUse {
+        if map.gain != 1.0 {
+            let message = format!("-mm of \"{}\" is ignored", map.file);
+            self.statements.warn(message);
+        }
+        self.textures
+            .add(map, ImageRole::Factors, &mut self.statements)
     }
 
     /// `norm`, or a bump map that is a map of normals, as some programs write them.

@@ -13,10 +13,10 @@ use crate::import::files;
 use crate::import::warnings::Warnings;
 
 /// More `mtllib` statements than this are not read.
-const MAX_LIBRARIES: usize = 1000;
+const MAX_LIBRARIES: usize = 256;
 
 /// More words of one are not looked at.
-const MAX_WORDS: usize = 20;
+const MAX_WORDS: usize = 8;
 
 /// All materials of all libraries.
 #[derive(Default)]

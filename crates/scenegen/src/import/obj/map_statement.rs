@@ -19,6 +19,8 @@ pub(super) struct MapStatement {
     pub(super) wrap: Wrap,
     /// `-imfchan`: the channel of a scalar map, 0 red … 3 alpha, if it names one.
     pub(super) channel: Option<usize>,
+    /// `-mm` without a base: a factor on the values.
+    pub(super) gain: f32,
     /// `-bm`, if it is there.
     pub(super) bump_scale: Option<f32>,
     /// Names of the other options, without the dash.
@@ -34,6 +36,7 @@ impl MapStatement {
             offset: [0.0; 2],
             wrap: Wrap::Repeat,
             channel: None,
+            gain: 1.0,
             bump_scale: None,
             others: BTreeSet::new(),
         };
@@ -76,6 +79,8 @@ impl MapStatement {
                     _ => None,
                 }
             }
+            // A base would have to be added to every texel.
+            "mm" if number(arguments, 0, 1.0) == 0.0 => self.gain = number(arguments, 1, 1.0),
             "bm" => self.bump_scale = Some(number(arguments, 0, 1.0)),
             // As images are filtered anyway.
             "blendu" | "blendv" if arguments[0] == "on" => {}
@@ -154,12 +159,13 @@ mod tests {
 
     #[test]
     fn the_last_of_equal_options_counts_and_unread_ones_are_named() {
-        let map = MapStatement::parse("-s 2 3 -s 4 -imfchan g -imfchan m -mm 0 1 -cc on -o nan a");
+        let map = MapStatement::parse("-s 2 3 -s 4 -imfchan g -imfchan m -mm 1 1 -cc on -o nan a");
         assert_eq!(
             (map.scale, map.channel, map.offset),
             ([4.0, 1.0], Some(3), [0.0; 2])
         );
         assert_eq!(map.others.into_iter().collect::<Vec<_>>(), ["cc", "mm"]);
         assert_eq!(map.file, "a");
+        assert_eq!(MapStatement::parse("-mm 0 0.5 a").gain, 0.5);
     }
 }

@@ -40,9 +40,6 @@ pub(super) fn read(statements: Statements<'_>, textures: &mut Textures<'_>) -> M
             (surface, ScalarInput { factor, texture })
         }
         Transparency::Glass { tint } => (glass(inputs, tint), constant(1.0)),
-        Transparency::PartlyGlass { transmission } => {
-            (partly_glass(inputs, transmission), constant(1.0))
-        }
     };
     let emission = inputs.color("ke", "map_ke", 0.0);
     let normal_map = inputs.normal_map();
@@ -61,36 +58,13 @@ pub(super) fn read(statements: Statements<'_>, textures: &mut Textures<'_>) -> M
     }
 }
 
-/// Glass has no colour but that of what it lets through.
+/// A smooth dielectric. Its highlights are reflections, which `Ni` gives.
 fn glass(inputs: &mut Inputs<'_, '_>, transmittance: [f32; 3]) -> SurfaceDesc {
-    for key in ["kd", "ks"] {
-        let color = inputs.statements.color(key);
-        if color.is_some_and(|color| color.iter().any(|&value| value > 0.0)) {
-            inputs
-                .statements
-                .warn(format!("{key} is ignored: the material is clear glass"));
-        }
-    }
-    inputs.statements.dismiss(&["ns", "d", "tr"]);
+    inputs.statements.dismiss(&["ks", "map_ks", "ns", "map_ns"]);
     SurfaceDesc::Dielectric {
         ior: ior(inputs),
         transmittance,
     }
-}
-
-/// Glass mixed with a diffuse base, of one colour. Its highlights are reflections, so that `Ks` and `Ns` have no part.
-fn partly_glass(inputs: &mut Inputs<'_, '_>, transmission: f32) -> SurfaceDesc {
-    inputs.statements.dismiss(&["ks", "ns"]);
-    SurfaceDesc::MetallicRoughness(MetallicRoughness {
-        base_color: inputs.color("kd", "map_kd", GREY),
-        metallic: constant(0.0),
-        roughness: constant(0.0),
-        ior: ior(inputs),
-        specular: constant(1.0),
-        specular_color: uniform(1.0),
-        transmission: constant(transmission),
-        solid: true,
-    })
 }
 
 fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> SurfaceDesc {

@@ -1,5 +1,7 @@
 //! Names of materials and files, as programs write them: in quotes, with comments behind them, or with a `#` in them.
 
+use unicode_normalization::UnicodeNormalization;
+
 use super::lines::comment_start;
 
 /// The readings of what stands where a name does, the most literal first: without quotes, then without what may be a
@@ -17,10 +19,15 @@ fn unquoted(name: &str) -> &str {
     inside('"').or_else(|| inside('\'')).unwrap_or(name).trim()
 }
 
-/// A name by which two that differ in case or the number of spaces are the same.
+/// A name by which two that differ in case or in how accents are composed are the same.
+pub(super) fn comparable(name: &str) -> String {
+    name.to_lowercase().nfc().collect()
+}
+
+/// The same for names whose spaces may differ, too.
 pub(super) fn relaxed(name: &str) -> String {
     let words: Vec<&str> = name.split_whitespace().collect();
-    words.join(" ").to_lowercase()
+    comparable(&words.join(" "))
 }
 
 #[cfg(test)]
@@ -38,5 +45,7 @@ mod tests {
         assert_eq!(all("a#b"), ["a#b"]);
         assert_eq!(all("\""), ["\""]);
         assert_eq!(relaxed("Red  Tray"), relaxed("red tray"));
+        assert_eq!(comparable("\u{d6}l"), comparable("o\u{308}L"));
+        assert_ne!(comparable("\u{d6}l"), comparable("ol"));
     }
 }

@@ -1,11 +1,11 @@
 //! An OBJ file as a scene description: the pieces of this folder put together.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use glam::DAffine3;
 
-use super::geometry::{Geometry, Part};
+use super::geometry::{Geometry, NamedMaterial, Part};
 use super::libraries::Libraries;
 use super::lines::line_place;
 use super::materials::Materials;
@@ -58,39 +58,42 @@ fn read(bytes: Vec<u8>, file: &Path, warnings: &mut Warnings) -> Result<SceneDes
     build(&geometry, &libraries, &materials, folder, budget, warnings)
 }
 
-/// The material of each `usemtl`, by index in the libraries. What is wrong is said once for each name: files repeat it
-/// thousands of times.
+/// The material of each `usemtl`, by index in the libraries. Files repeat names thousands of times: each is looked up and
+/// complained about once.
 fn find_materials(
     geometry: &Geometry,
     libraries: &Libraries,
     warnings: &mut Warnings,
 ) -> Vec<Option<usize>> {
+    let mut known: HashMap<(&str, usize), Option<usize>> = HashMap::new();
     let mut said: HashSet<&str> = HashSet::new();
-    geometry
-        .materials
-        .iter()
-        .map(|named| {
-            let found = libraries.find(named);
-            let problem = match &found {
-                None => Some("is in no library; grey is used".to_owned()),
-                Some(found) if found.is_guess => {
-                    let name = libraries.materials[found.index].name.escape_debug();
-                    Some(format!("is in no library; \"{name}\" is used"))
-                }
-                Some(_) => None,
-            };
+    let find = |named: &NamedMaterial| {
+        let found = libraries.find(named);
+        let problem = match &found {
+            None => Some("is in no library; grey is used".to_owned()),
+            Some(found) if found.is_guess => {
+                let name = libraries.materials[found.index].name.escape_debug();
+                Some(format!("is in no library; \"{name}\" is used"))
+            }
+            Some(_) => None,
+        };
+        (found.map(|found| found.index), problem)
+    };
+    let materials = geometry.materials.iter().map(|named| {
+        let key = (named.name.as_str(), named.libraries_before);
+        *known.entry(key).or_insert_with(|| {
+            let (index, problem) = find(named);
             if let Some(problem) = problem
                 && said.insert(&named.name)
             {
                 let name = named.name.escape_debug();
-                warnings.push(
-                    line_place(named.line),
-                    format!("material \"{name}\" {problem}"),
-                );
+                let message = format!("material \"{name}\" {problem}");
+                warnings.push(line_place(named.line), message);
             }
-            found.map(|found| found.index)
+            index
         })
-        .collect()
+    });
+    materials.collect()
 }
 
 fn build(

@@ -2,27 +2,38 @@
 
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
-/// Decodes a whole file. A byte order mark decides; without one, text whose every other byte is zero is UTF-16,
-/// and what is no UTF-8 becomes Windows-1252, which has a character for every byte: whatever code page was
-/// meant, different names stay different and [`legacy_bytes`] gives their bytes back.
+/// Decodes a whole file. A byte order mark decides; without one, text whose every other byte is zero is UTF-16, and a
+/// line that is no UTF-8 becomes Windows-1252, which has a character for every byte: whatever code page was meant,
+/// different names stay different and [`legacy_bytes`] gives their bytes back.
 pub(super) fn decode(bytes: Vec<u8>) -> String {
-    let (marked, mark_length) = match bytes[..] {
-        [0xff, 0xfe, 0, 0, ..] => return decode_utf32(&bytes[4..], u32::from_le_bytes),
-        [0, 0, 0xfe, 0xff, ..] => return decode_utf32(&bytes[4..], u32::from_be_bytes),
-        [0xff, 0xfe, ..] => (Some(UTF_16LE), 2),
-        [0xfe, 0xff, ..] => (Some(UTF_16BE), 2),
-        [0xef, 0xbb, 0xbf, ..] => (None, 3),
-        _ => (unmarked_utf16(&bytes), 0),
-    };
-    let decode = |encoding: &'static Encoding, bytes: &[u8]| {
-        let (text, _) = encoding.decode_without_bom_handling(bytes);
-        text.into_owned()
-    };
-    match marked {
-        Some(encoding) => decode(encoding, &bytes[mark_length..]),
-        None => String::from_utf8(bytes)
-            .unwrap_or_else(|error| decode(WINDOWS_1252, &error.as_bytes()[mark_length..])),
+    match bytes[..] {
+        [0xff, 0xfe, 0, 0, ..] => decode_utf32(&bytes[4..], u32::from_le_bytes),
+        [0, 0, 0xfe, 0xff, ..] => decode_utf32(&bytes[4..], u32::from_be_bytes),
+        [0xff, 0xfe, ..] => decode_as(UTF_16LE, &bytes[2..]),
+        [0xfe, 0xff, ..] => decode_as(UTF_16BE, &bytes[2..]),
+        // A mark of UTF-8 is white space to those who read lines.
+        _ => match unmarked_utf16(&bytes) {
+            Some(encoding) => decode_as(encoding, &bytes),
+            None => String::from_utf8(bytes).unwrap_or_else(|error| decode_lines(error.as_bytes())),
+        },
     }
+}
+
+fn decode_as(encoding: &'static Encoding, bytes: &[u8]) -> String {
+    encoding.decode_without_bom_handling(bytes).0.into_owned()
+}
+
+/// Files are put together of others, so that each line may have its own encoding.
+fn decode_lines(bytes: &[u8]) -> String {
+    let lines = bytes.split_inclusive(|byte| matches!(byte, b'\n' | b'\r'));
+    let mut text = String::with_capacity(bytes.len());
+    for line in lines {
+        match str::from_utf8(line) {
+            Ok(line) => text.push_str(line),
+            Err(_) => text.push_str(&decode_as(WINDOWS_1252, line)),
+        }
+    }
+    text
 }
 
 /// The bytes of text that was decoded as Windows-1252; `None` where it has other characters.
@@ -84,5 +95,9 @@ mod tests {
         assert_eq!(legacy_bytes(&text), Some(every_byte));
         assert_eq!(decode(b"usemtl \xd6l".to_vec()), "usemtl Öl");
         assert_eq!(legacy_bytes("金"), None);
+        assert_eq!(
+            decode(b"# \xa9\rusemtl \xc3\x96l\n".to_vec()),
+            "# ©\rusemtl Öl\n"
+        );
     }
 }

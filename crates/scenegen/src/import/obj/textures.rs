@@ -19,7 +19,14 @@ pub(super) struct Textures<'a> {
     requests: Vec<ImageRequest<'static>>,
     /// From paths, or the names of missing files, to indices of `requests`.
     image_indices: BTreeMap<PathBuf, usize>,
+    /// By path, what has been looked at.
+    looks: BTreeMap<PathBuf, Looks>,
+    /// How many files may still be looked for where their names do not say.
+    guesses_left: usize,
 }
+
+/// More files than this are not looked for where their names do not say, which takes a thousand looks each.
+const MAX_GUESSES: usize = 1000;
 
 /// What the texels of an image look like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,6 +47,8 @@ impl<'a> Textures<'a> {
             list: Vec::new(),
             requests: Vec::new(),
             image_indices: BTreeMap::new(),
+            looks: BTreeMap::new(),
+            guesses_left: MAX_GUESSES,
         }
     }
 
@@ -68,13 +77,18 @@ impl<'a> Textures<'a> {
     }
 
     /// What an image looks like, for statements whose meaning depends on that.
-    pub(super) fn look_at(&self, map: &MapStatement, user: &Statements<'_>) -> Looks {
+    pub(super) fn look_at(&mut self, map: &MapStatement, user: &Statements<'_>) -> Looks {
         let Some(Location { path, .. }) = self.locate(&map.file, user) else {
             return Looks::Other;
         };
+        if let Some(&known) = self.looks.get(&path) {
+            return known;
+        }
         let decoded =
             files::read(&path).and_then(|bytes| images::decode_one(&bytes, extension(&path)));
-        decoded.map_or(Looks::Other, |decoded| looks(&decoded.texels))
+        let looks = decoded.map_or(Looks::Other, |decoded| looks(&decoded.texels));
+        self.looks.insert(path, looks);
+        looks
     }
 
     fn image(&mut self, file: &str, role: ImageRole, user: &mut Statements<'_>) -> usize {
@@ -107,11 +121,16 @@ impl<'a> Textures<'a> {
         self.requests.len() - 1
     }
 
-    fn locate(&self, file: &str, user: &Statements<'_>) -> Option<Location> {
+    fn locate(&mut self, file: &str, user: &Statements<'_>) -> Option<Location> {
         let folders = [&*user.material().folder, self.folder];
-        let location = |is_guess| move |path| Location { path, is_guess };
-        let named = find(file, &folders).map(location(false));
-        named.or_else(|| guess(file, &folders).map(location(true)))
+        if let Some(path) = find(file, &folders) {
+            let is_guess = false;
+            return Some(Location { path, is_guess });
+        }
+        self.guesses_left = self.guesses_left.checked_sub(1)?;
+        let path = guess(file, &folders)?;
+        let is_guess = true;
+        Some(Location { path, is_guess })
     }
 
     /// The textures, and the images decoded.

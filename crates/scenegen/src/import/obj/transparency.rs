@@ -13,55 +13,65 @@ pub(super) enum Transparency {
     },
     /// All that is not reflected is refracted.
     Glass {
-        /// `Tf`.
+        /// What it is multiplied by on its way.
         tint: [f32; 3],
-    },
-    /// A part of it is refracted; the rest of the surface is as if opaque.
-    PartlyGlass {
-        /// 1 − `d`.
-        transmission: f32,
     },
 }
 
 /// `illum` 4, 6, 7 and 9 ask for glass, and so does a `Tf` that is a colour. What exporters write for every material
-/// does not: `illum` 4 or `Ni` alone, a `Tf` of black or white, and `d` below 1.
+/// does not: `illum` 4 or `Ni` alone, a `Tf` of black or white, and `d` below 1. Maps of colour and opacity belong to
+/// surfaces, whatever else is written.
 pub(super) fn read(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> Transparency {
     let opacity = opacity(inputs);
-    let tint = inputs
-        .statements
-        .color("tf")
-        .map(|tint| inputs.at_most_1("Tf", tint));
-    let is_tinted = tint.is_some_and(|tint| tint != [0.0; 3] && tint != [1.0; 3]);
     let is_said_opaque = opacity == Some(1.0);
     let opacity = opacity.unwrap_or(1.0);
-    let has_color_map = inputs.statements.has("map_kd");
+    let tint = inputs.statements.color("tf");
+    let tint = tint.map(|tint| inputs.at_most_1("Tf", tint));
+    let tint = tint.filter(|&tint| tint != [0.0; 3] && tint != [1.0; 3]);
     let refracts = inputs.statements.number("ni").is_some_and(|ior| ior > 1.0);
-    let is_glass = match illumination {
-        Illumination::Glass => {
-            opacity < 1.0 || is_tinted || (refracts && !is_said_opaque && !has_color_map)
-        }
-        Illumination::Refraction => opacity < 1.0 || is_tinted || !has_color_map,
-        _ => is_tinted && !is_said_opaque,
+    let asks_for_glass = match illumination {
+        Illumination::Glass => opacity < 1.0 || tint.is_some() || (refracts && !is_said_opaque),
+        Illumination::Refraction => true,
+        _ => tint.is_some() && !is_said_opaque,
     };
-    // A map of opacity cuts leaves out of sheets, whatever else is written.
-    if !is_glass || inputs.statements.has("map_d") {
-        if is_tinted {
-            inputs
-                .statements
-                .warn("Tf is ignored, as the material is opaque or dissolved by a map");
+    let has_map = ["map_kd", "map_d"]
+        .into_iter()
+        .find(|key| inputs.statements.has(key));
+    match has_map {
+        Some(map) if asks_for_glass => {
+            let message =
+                format!("{map} is for surfaces: the material dissolves by d and is no glass");
+            inputs.statements.warn(message);
         }
-        return Transparency::Dissolve { opacity };
+        None if asks_for_glass => {
+            let tint = glass_tint(inputs, tint.unwrap_or([1.0; 3]), opacity);
+            return Transparency::Glass { tint };
+        }
+        _ if tint.is_some() => inputs
+            .statements
+            .warn("Tf is ignored, as d says that the material is opaque"),
+        _ => {}
     }
-    let diffuse = inputs.statements.color("kd");
-    let is_colored =
-        has_color_map || diffuse.is_some_and(|color| color.iter().any(|&value| value > 0.0));
-    if !is_tinted && opacity > 0.0 && opacity < 1.0 && is_colored {
-        return Transparency::PartlyGlass {
-            transmission: 1.0 - opacity,
-        };
+    Transparency::Dissolve { opacity }
+}
+
+/// The colour of glass: `Tf`, and `Kd` as far as `d` makes it opaque.
+fn glass_tint(inputs: &mut Inputs<'_, '_>, tint: [f32; 3], opacity: f32) -> [f32; 3] {
+    let Some(diffuse) = inputs
+        .statements
+        .color("kd")
+        .filter(|&diffuse| diffuse != [0.0; 3])
+    else {
+        return tint;
+    };
+    if opacity <= 0.0 || opacity >= 1.0 {
+        inputs
+            .statements
+            .warn("kd is ignored: the material is clear glass");
+        return tint;
     }
-    let tint = tint.filter(|_| is_tinted).unwrap_or([1.0; 3]);
-    Transparency::Glass { tint }
+    let diffuse = inputs.at_most_1("kd", diffuse);
+    std::array::from_fn(|channel| tint[channel] * (1.0 - opacity + opacity * diffuse[channel]))
 }
 
 /// How much of the surface is there, by `d` and `Tr`, which programs confuse; `None` where neither says.
