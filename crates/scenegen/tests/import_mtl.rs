@@ -290,16 +290,18 @@ fn roughness_and_metalness_are_read() {
     let channels =
         [&mapped.metallic, &mapped.roughness].map(|input| input.texture.as_ref().unwrap().1);
     assert_eq!(channels, [2, 0]);
-    let (_, scene) = material("Pr 0.5\nPc 1\nPs 0.5\naniso 1\nmap_Ps kd.png");
+    let (_, scene) = material("Pr 0.5\nPc 1\nPcr 0.03\nPs 0\naniso 0\nanisor 0\nmap_Ps kd.png");
     assert!(
-        warns(
-            &scene,
-            "m",
-            "not rendered and ignored: aniso, map_ps, pc, ps"
-        ),
+        warns(&scene, "m", "pc: a clear coat is not rendered"),
         "{:?}",
         scene.warnings
     );
+    assert!(
+        warns(&scene, "m", "not rendered and ignored: map_ps"),
+        "{:?}",
+        scene.warnings
+    );
+    assert_eq!(scene.warnings.len(), 2);
 }
 
 #[test]

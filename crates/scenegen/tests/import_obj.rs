@@ -7,7 +7,7 @@ use residual_scenegen::import::{ImportOptions, import};
 mod common;
 
 use common::gltf_text::warns;
-use common::obj_text::{geometry, material, try_import};
+use common::obj_text::{geometry, material, phong, try_import};
 
 /// The only mesh of a file that needs no warning.
 fn faultless(text: &str) -> MeshDesc {
@@ -126,6 +126,20 @@ fn vertex_colours_are_display_values_of_those_that_have_them() {
         .map(|mesh| mesh.colors.is_some())
         .collect();
     assert_eq!(has_colors, [false, true, false]);
+    assert!(scene.warnings.is_empty());
+}
+
+#[test]
+fn vertex_colours_without_a_material_are_left_as_they_are() {
+    let scene = geometry(
+        "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\no plain\nf 4 5 6\n",
+    );
+    let diffuse = |mesh: usize| {
+        phong(&scene.materials[scene.meshes[mesh].material])
+            .diffuse
+            .factor
+    };
+    assert_eq!((diffuse(0), diffuse(1)), ([1.0; 3], [0.8; 3]));
     assert!(scene.warnings.is_empty());
 }
 

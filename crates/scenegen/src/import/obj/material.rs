@@ -119,7 +119,25 @@ fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> Su
 /// `Pr` and `Pm`, the extension for physically based materials, are the roughness and metalness of glTF; `Ks` and `Ns`
 /// are there for programs that do not know them.
 fn metallic_roughness(inputs: &mut Inputs<'_, '_>, base_color: ColorInput) -> SurfaceDesc {
-    inputs.statements.dismiss(&["ks", "map_ks", "ns", "map_ns"]);
+    inputs
+        .statements
+        .dismiss(&["ks", "map_ks", "ns", "map_ns", "pcr"]);
+    for (key, what) in [
+        ("ps", "sheen"),
+        ("pc", "a clear coat"),
+        ("aniso", "anisotropy"),
+        ("anisor", "anisotropy"),
+    ] {
+        if inputs
+            .statements
+            .number(key)
+            .is_some_and(|value| value != 0.0)
+        {
+            inputs
+                .statements
+                .warn(format!("{key}: {what} is not rendered"));
+        }
+    }
     let ior = match inputs.statements.number("ni") {
         Some(ior) if ior > 1.0 => ior,
         _ => DEFAULT_IOR,

@@ -17,8 +17,19 @@ pub(super) struct Materials<'a> {
     list: Vec<MaterialDesc>,
     /// Where those of `list` stand.
     places: Vec<String>,
-    /// From indices in `library`, of which `None` is a grey default, to those in `list`.
-    indices: BTreeMap<Option<usize>, usize>,
+    /// To indices in `list`.
+    indices: BTreeMap<Source, usize>,
+}
+
+/// Where a material comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Source {
+    /// An index in the library.
+    Library(usize),
+    /// A grey default.
+    Grey,
+    /// A white one, for vertices that have colours.
+    White,
 }
 
 impl<'a> Materials<'a> {
@@ -33,32 +44,38 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// A material of the library with its index in the scene; `None` is a grey default.
+    /// A material with its index in the scene.
     pub(super) fn get(
         &mut self,
-        index: Option<usize>,
+        source: Source,
         warnings: &mut Warnings,
     ) -> (usize, &MaterialDesc) {
-        let in_scene = match self.indices.get(&index) {
+        let index = match self.indices.get(&source) {
             Some(&known) => known,
             None => {
-                let unnamed = MtlMaterial::unnamed();
-                let source = index.map_or(&unnamed, |index| &self.library[index]);
-                let statements = Statements::new(source, warnings);
-                let material = material::read(statements, &mut self.textures);
-                self.list.push(material);
-                self.places.push(source.place());
-                self.indices.insert(index, self.list.len() - 1);
+                let default = match source {
+                    Source::White => MtlMaterial::white(),
+                    Source::Grey | Source::Library(_) => MtlMaterial::grey(),
+                };
+                let material = match source {
+                    Source::Library(index) => &self.library[index],
+                    Source::Grey | Source::White => &default,
+                };
+                self.places.push(material.place());
+                let statements = Statements::new(material, warnings);
+                self.list
+                    .push(material::read(statements, &mut self.textures));
+                self.indices.insert(source, self.list.len() - 1);
                 self.list.len() - 1
             }
         };
-        (in_scene, &self.list[in_scene])
+        (index, &self.list[index])
     }
 
     /// Says which materials of the libraries are not in use.
     pub(super) fn dismiss_unused(&self, warnings: &mut Warnings) {
         for (index, material) in self.library.iter().enumerate() {
-            if !self.indices.contains_key(&Some(index)) {
+            if !self.indices.contains_key(&Source::Library(index)) {
                 warnings.dismiss(None, material.place(), "no face uses it");
             }
         }

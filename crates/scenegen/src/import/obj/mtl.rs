@@ -36,11 +36,19 @@ pub(super) enum TrMeaning {
 }
 
 impl MtlMaterial {
-    /// The material that no library has.
-    pub(super) fn unnamed() -> Self {
+    /// The material of faces without one.
+    pub(super) fn grey() -> Self {
         Self {
             name: "default".into(),
             ..Self::default()
+        }
+    }
+
+    /// The same where vertices have colours, which it leaves as they are.
+    pub(super) fn white() -> Self {
+        Self {
+            statements: [("kd".into(), "1".into())].into(),
+            ..Self::grey()
         }
     }
 

@@ -8,7 +8,7 @@ use glam::DAffine3;
 use super::geometry::{Geometry, NamedMaterial, Part};
 use super::libraries::Libraries;
 use super::lines::line_place;
-use super::materials::Materials;
+use super::materials::{Materials, Source};
 use super::part_mesh::PartMeshes;
 use super::{parser, references, text};
 use crate::desc::{MeshDesc, SceneDesc};
@@ -115,8 +115,12 @@ fn build(
         let place = format!("o \"{}\"", part.name.escape_debug());
         budget.charge(corner_count(geometry, part), CORNER_BYTES, &place)?;
         let part_mesh = meshes.mesh(part);
-        let (material_index, material) =
-            materials.get(part.material.and_then(|index| used[index]), warnings);
+        let source = match part.material.and_then(|index| used[index]) {
+            Some(index) => Source::Library(index),
+            None if part_mesh.raw.colors.is_some() => Source::White,
+            None => Source::Grey,
+        };
+        let (material_index, material) = materials.get(source, warnings);
         if part_mesh.corners_without_uv > 0 && material.textures().next().is_some() {
             let message = format!(
                 "{} corners lack texture coordinates; (0, 0) is used",
