@@ -13,6 +13,9 @@ const AREA_TOLERANCE: f64 = 1e-4;
 /// Negative areas of triangles up to this share of the polygon's are rounding.
 const CONCAVITY_TOLERANCE: f64 = 1e-6;
 
+/// Corners are on the plane of a polygon up to this part of the root of its area.
+const FLATNESS: f64 = 0.01;
+
 /// How well triangles cover a polygon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::import) enum Coverage {
@@ -57,7 +60,8 @@ impl Triangulator {
     }
 
     /// Appends triangles of indices of `corners`, of which there are at least three: a fan around the first one where
-    /// no triangle of it faces backwards, seen along the polygon's normal, and what earcut finds elsewhere.
+    /// no triangle of it faces backwards, seen along the polygon's normal; the other diagonal of quadrilaterals,
+    /// and what earcut finds, elsewhere.
     pub(in crate::import) fn triangulate(
         &mut self,
         corners: &[Vec3],
@@ -79,29 +83,47 @@ impl Triangulator {
             [offset.dot(x), offset.dot(y)]
         }));
         let outline = &self.outline;
-        let is_backwards =
-            |triangle: [u32; 3]| signed_area(outline, triangle) < -CONCAVITY_TOLERANCE * area;
-        if !fan.clone().any(is_backwards) {
+        let faces_forward =
+            |triangle: [u32; 3]| signed_area(outline, triangle) >= -CONCAVITY_TOLERANCE * area;
+        if fan.clone().all(faces_forward) {
             triangles.extend(fan);
             return Coverage::Exact;
         }
-        let Some(work_left) = self.work_left.checked_sub(u64::from(count).pow(2)) else {
-            triangles.extend(fan);
-            return Coverage::Approximate;
-        };
-        self.work_left = work_left;
-        self.earcut.earcut_slice(outline, &[], &mut self.cut);
-        let mut covered = 0.0;
-        for &[a, b, c] in self.cut.as_chunks::<3>().0 {
-            let triangle_area = signed_area(outline, [a, b, c]);
-            covered += triangle_area.abs();
-            triangles.push(if triangle_area < 0.0 {
-                [a, c, b]
-            } else {
-                [a, b, c]
-            });
+        let other_diagonal = [[1, 2, 3], [1, 3, 0]];
+        if count == 4 && other_diagonal.into_iter().all(faces_forward) {
+            triangles.extend(other_diagonal);
+            return Coverage::Exact;
         }
-        match (covered - area).abs() <= AREA_TOLERANCE * area {
+        let work = u64::from(count).pow(2);
+        if let Some(work_left) = self.work_left.checked_sub(work)
+            && count > 4
+        {
+            self.work_left = work_left;
+            self.earcut.earcut_slice(outline, &[], &mut self.cut);
+            let (cut, _) = self.cut.as_chunks::<3>();
+            let covered: f64 = cut
+                .iter()
+                .map(|&triangle| signed_area(outline, triangle).abs())
+                .sum();
+            if (covered - area).abs() <= AREA_TOLERANCE * area {
+                triangles.extend(cut.iter().map(|&[a, b, c]| {
+                    match signed_area(outline, [a, b, c]) < 0.0 {
+                        true => [a, c, b],
+                        false => [a, b, c],
+                    }
+                }));
+                return Coverage::Exact;
+            }
+        }
+        // Without holes, at least.
+        triangles.extend(fan);
+        let normal = area_vector / area;
+        let height = |corner: &Vec3| (corner.as_dvec3() - origin).dot(normal).abs();
+        let is_flat = corners
+            .iter()
+            .all(|corner| height(corner) <= FLATNESS * area.sqrt());
+        // Folded quadrilaterals have no outline; either diagonal is right.
+        match count == 4 && !is_flat {
             true => Coverage::Exact,
             false => Coverage::Approximate,
         }
@@ -286,6 +308,25 @@ mod tests {
             3,
             "left out later, as any triangle of such corners"
         );
+    }
+
+    #[test]
+    fn folded_quadrilaterals_are_two_triangles() {
+        let mut state = 7_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
+        };
+        for _ in 0..1000 {
+            let corners = [[0., 0.], [0.1, 0.], [0.1, 0.1], [0., 0.1]]
+                .map(|[x, y]| Vec3::new(x, y, random()));
+            let (triangles, coverage) = cut(&corners);
+            assert_eq!(
+                (triangles.len(), coverage),
+                (2, Coverage::Exact),
+                "{corners:?}"
+            );
+        }
     }
 
     #[test]

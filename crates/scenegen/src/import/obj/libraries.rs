@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use super::find::{find, guess};
+use super::find::Finder;
 use super::geometry::{Geometry, NamedMaterial};
 use super::lines::line_place;
 use super::mtl::{self, MtlMaterial};
@@ -44,6 +44,7 @@ impl Libraries {
     pub(super) fn load(geometry: &Geometry, file: &Path, warnings: &mut Warnings) -> Self {
         let folder = file.parent().unwrap_or(Path::new(""));
         let mut libraries = Self::default();
+        let mut finder = Finder::new();
         let (mut seen_names, mut seen_paths) = (HashSet::new(), HashSet::new());
         for (statement, (line, names)) in geometry.libraries.iter().enumerate() {
             let place = line_place(*line);
@@ -60,8 +61,9 @@ impl Libraries {
             if names.is_empty() {
                 warnings.push(&*place, "mtllib without a name is ignored");
             }
-            for (name, path) in split_names(names, folder) {
-                let path = path.or_else(|| guess_library(&name, &place, file, warnings));
+            for (name, path) in split_names(names, folder, &mut finder) {
+                let path =
+                    path.or_else(|| guess_library(&name, &place, file, &mut finder, warnings));
                 let Some(path) = path else {
                     let message = format!("material library \"{name}\" is not there; left out");
                     warnings.push(&*place, message);
@@ -136,17 +138,17 @@ impl Libraries {
 
 /// The files that one `mtllib` names. Several are separated by spaces, while names have spaces, too: the longest runs
 /// of words that name a file are what is meant.
-fn split_names(text: &str, folder: &Path) -> Vec<(String, Option<PathBuf>)> {
+fn split_names(text: &str, folder: &Path, finder: &mut Finder) -> Vec<(String, Option<PathBuf>)> {
     let folders = [folder];
     let whole = |path| vec![(text.to_owned(), path)];
-    if let Some(path) = find(text, &folders) {
+    if let Some(path) = finder.find(text, &folders) {
         return whole(Some(path));
     }
     let quoted: Vec<&str> = text.split('"').skip(1).step_by(2).collect();
     if quoted.len() > 1 {
         return quoted
             .into_iter()
-            .map(|name| (name.to_owned(), find(name, &folders)))
+            .map(|name| (name.to_owned(), finder.find(name, &folders)))
             .collect();
     }
     let starts: Vec<usize> = (0..text.len())
@@ -167,7 +169,7 @@ fn split_names(text: &str, folder: &Path) -> Vec<(String, Option<PathBuf>)> {
         let ends = (first + 1..=starts.len()).rev();
         let found = ends.into_iter().find_map(|end| {
             let name = text[starts[first]..starts.get(end).copied().unwrap_or(text.len())].trim();
-            Some((end, name, find(name, &folders)?))
+            Some((end, name, finder.find(name, &folders)?))
         });
         match found {
             Some((end, name, path)) => {
@@ -196,10 +198,18 @@ fn split_names(text: &str, folder: &Path) -> Vec<(String, Option<PathBuf>)> {
 }
 
 /// Where a library that is not where it should be may be.
-fn guess_library(name: &str, place: &str, file: &Path, warnings: &mut Warnings) -> Option<PathBuf> {
+fn guess_library(
+    name: &str,
+    place: &str,
+    file: &Path,
+    finder: &mut Finder,
+    warnings: &mut Warnings,
+) -> Option<PathBuf> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let sibling = file.with_extension("mtl");
-    let path = guess(name, &[folder]).or_else(|| sibling.is_file().then_some(sibling))?;
+    let path = finder
+        .guess(name, &[folder])
+        .or_else(|| sibling.is_file().then_some(sibling))?;
     let message = format!(
         "material library \"{name}\" is not there; {} is used",
         quoted_name(&path)

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::find::{find, guess};
+use super::find::Finder;
 use super::map_statement::MapStatement;
 use super::statements::Statements;
 use crate::desc::{Filter, ImageDesc, Texels, TextureDesc, TextureUse, UvTransform};
@@ -21,12 +21,8 @@ pub(super) struct Textures<'a> {
     image_indices: BTreeMap<PathBuf, usize>,
     /// By path, what has been looked at.
     looks: BTreeMap<PathBuf, Looks>,
-    /// How many files may still be looked for where their names do not say.
-    guesses_left: usize,
+    finder: Finder,
 }
-
-/// More files than this are not looked for where their names do not say, which takes a thousand looks each.
-const MAX_GUESSES: usize = 1000;
 
 /// What the texels of an image look like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +44,7 @@ impl<'a> Textures<'a> {
             requests: Vec::new(),
             image_indices: BTreeMap::new(),
             looks: BTreeMap::new(),
-            guesses_left: MAX_GUESSES,
+            finder: Finder::new(),
         }
     }
 
@@ -123,14 +119,9 @@ impl<'a> Textures<'a> {
 
     fn locate(&mut self, file: &str, user: &Statements<'_>) -> Option<Location> {
         let folders = [&*user.material().folder, self.folder];
-        if let Some(path) = find(file, &folders) {
-            let is_guess = false;
-            return Some(Location { path, is_guess });
-        }
-        self.guesses_left = self.guesses_left.checked_sub(1)?;
-        let path = guess(file, &folders)?;
-        let is_guess = true;
-        Some(Location { path, is_guess })
+        let location = |is_guess| move |path| Location { path, is_guess };
+        let found = self.finder.find(file, &folders).map(location(false));
+        found.or_else(|| self.finder.guess(file, &folders).map(location(true)))
     }
 
     /// The textures, and the images decoded.
