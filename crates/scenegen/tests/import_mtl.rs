@@ -207,6 +207,9 @@ fn black_beside_a_map_means_the_map() {
     let (lamp, scene) = material("Ke 0 0 0\nmap_Ke white.png");
     assert_eq!(lamp.emission.factor, [1.0; 3]);
     assert!(warns(&scene, "m", "ke 0 would make map_ke black"));
+    let (dull, scene) = material("Ks 0 0 0\nmap_Ks white.png\nNs 10");
+    assert_eq!(phong(&dull).specular.factor, [0.0; 3]);
+    assert!(warns(&scene, "m", "map_ks has no effect, as ks is 0"));
     let (tinted, scene) = material("Kd 0 0.5 0\nmap_Kd white.png");
     assert_eq!(phong(&tinted).diffuse.factor, [0.0, 0.5, 0.0]);
     assert!(scene.warnings.is_empty());

@@ -2,7 +2,7 @@
 
 use super::map_statement::MapStatement;
 use super::statements::Statements;
-use super::textures::{Looks, Textures};
+use super::textures::Textures;
 use crate::desc::{ColorInput, NormalMap, ScalarInput, TextureUse};
 use crate::import::images::ImageRole;
 
@@ -14,6 +14,15 @@ pub(super) struct Inputs<'r, 'a> {
     pub(super) textures: &'r mut Textures<'a>,
 }
 
+/// What black is that stands beside a texture.
+#[derive(Clone, Copy)]
+pub(super) enum BlackBesideMap {
+    /// What programs write that know the texture only: the texture counts.
+    Nothing,
+    /// Black.
+    Black,
+}
+
 impl Inputs<'_, '_> {
     /// A colour and its texture; without a colour, 1 where there is a texture and `default` elsewhere.
     pub(super) fn color(
@@ -21,6 +30,7 @@ impl Inputs<'_, '_> {
         key: &'static str,
         map_key: &'static str,
         default: f32,
+        black: BlackBesideMap,
     ) -> ColorInput {
         let map = self.statements.map(map_key, ImageRole::Factors);
         let gain = map.as_ref().map_or(1.0, |map| map.gain);
@@ -30,9 +40,13 @@ impl Inputs<'_, '_> {
         });
         let mut given = self.statements.color(key);
         if texture.is_some() && given == Some([0.0; 3]) {
-            self.statements
-                .warn(format!("{key} 0 would make {map_key} black; 1 is used"));
-            given = None;
+            self.statements.warn(match black {
+                BlackBesideMap::Nothing => {
+                    given = None;
+                    format!("{key} 0 would make {map_key} black; 1 is used")
+                }
+                BlackBesideMap::Black => format!("{map_key} has no effect, as {key} is 0"),
+            });
         }
         let default = if texture.is_some() { 1.0 } else { default };
         let factor = given.unwrap_or([default; 3]).map(|value| value * gain);
@@ -93,7 +107,7 @@ impl Inputs<'_, '_> {
         let channel = match map.channel {
             Some(channel) => channel,
             None if self.statements.name_one_file("map_d", "map_kd") => 3,
-            None if self.textures.look_at(&map, &self.statements) == Looks::Transparent => 3,
+            None if self.textures.look_at(&map, &self.statements).has_alpha => 3,
             None => 0,
         };
         Some((self.scalar_texture(&map), channel))
@@ -113,7 +127,7 @@ impl Inputs<'_, '_> {
         let keys = ["norm", "map_bump", "bump"];
         let key = keys.into_iter().find(|key| self.statements.has(key))?;
         let map = self.statements.map(key, ImageRole::Normals)?;
-        if key != "norm" && self.textures.look_at(&map, &self.statements) != Looks::Normals {
+        if key != "norm" && !self.textures.look_at(&map, &self.statements).are_directions {
             self.statements
                 .warn(format!("{key}: height maps are not supported and ignored"));
             return None;

@@ -1,7 +1,7 @@
 //! One MTL material: its statements as a description.
 
 use super::illumination::Illumination;
-use super::inputs::{Inputs, constant, uniform};
+use super::inputs::{BlackBesideMap, Inputs, constant, uniform};
 use super::statements::Statements;
 use super::textures::Textures;
 use super::transparency::{self, Transparency};
@@ -41,7 +41,7 @@ pub(super) fn read(statements: Statements<'_>, textures: &mut Textures<'_>) -> M
         }
         Transparency::Glass { tint } => (glass(inputs, tint), constant(1.0)),
     };
-    let emission = inputs.color("ke", "map_ke", 0.0);
+    let emission = inputs.color("ke", "map_ke", 0.0, BlackBesideMap::Nothing);
     let normal_map = inputs.normal_map();
     inputs.statements.warn_about_unread();
     MaterialDesc {
@@ -68,7 +68,7 @@ fn glass(inputs: &mut Inputs<'_, '_>, transmittance: [f32; 3]) -> SurfaceDesc {
 }
 
 fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> SurfaceDesc {
-    let diffuse = inputs.color("kd", "map_kd", GREY);
+    let diffuse = inputs.color("kd", "map_kd", GREY, BlackBesideMap::Nothing);
     if ["pr", "pm", "map_pr", "map_pm"]
         .into_iter()
         .any(|key| inputs.statements.has(key))
@@ -80,7 +80,7 @@ fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> Su
             inputs.statements.dismiss(&["ks", "map_ks", "ns", "map_ns"]);
             uniform(0.0)
         }
-        _ => inputs.color("ks", "map_ks", 0.0),
+        _ => inputs.color("ks", "map_ks", 0.0, BlackBesideMap::Black),
     };
     let has_specular = specular.factor != [0.0; 3];
     let exponent_map = inputs.scalar_map("map_ns");

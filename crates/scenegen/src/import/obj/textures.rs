@@ -25,14 +25,12 @@ pub(super) struct Textures<'a> {
 }
 
 /// What the texels of an image look like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Looks {
-    /// Directions: blue on average, with red and green near a half.
-    Normals,
-    /// Some texels are transparent.
-    Transparent,
-    /// Anything else, or nothing that can be read.
-    Other,
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Looks {
+    /// Red and green are a half on average, and blue is more: directions in tangent space.
+    pub(super) are_directions: bool,
+    /// Some alpha is below 1.
+    pub(super) has_alpha: bool,
 }
 
 impl<'a> Textures<'a> {
@@ -75,14 +73,14 @@ impl<'a> Textures<'a> {
     /// What an image looks like, for statements whose meaning depends on that.
     pub(super) fn look_at(&mut self, map: &MapStatement, user: &Statements<'_>) -> Looks {
         let Some(Location { path, .. }) = self.locate(&map.file, user) else {
-            return Looks::Other;
+            return Looks::default();
         };
         if let Some(&known) = self.looks.get(&path) {
             return known;
         }
         let decoded =
             files::read(&path).and_then(|bytes| images::decode_one(&bytes, extension(&path)));
-        let looks = decoded.map_or(Looks::Other, |decoded| looks(&decoded.texels));
+        let looks = decoded.map_or(Looks::default(), |decoded| looks(&decoded.texels));
         self.looks.insert(path, looks);
         looks
     }
@@ -142,22 +140,29 @@ fn extension(path: &Path) -> Option<&str> {
 }
 
 fn looks(texels: &Texels) -> Looks {
-    let Texels::Rgba8(texels) = texels else {
-        return Looks::Other;
-    };
-    if texels.iter().any(|texel| texel[3] < 255) {
-        return Looks::Transparent;
+    match texels {
+        Texels::Rgba8(texels) => {
+            let texels = texels.iter();
+            looks_of(texels.map(|texel| texel.map(|code| f64::from(code) / 255.0)))
+        }
+        Texels::RgbaF32(texels) => looks_of(texels.iter().map(|texel| texel.map(f64::from))),
     }
-    let mut sums = [0_u64; 3];
+}
+
+fn looks_of(texels: impl ExactSizeIterator<Item = [f64; 4]>) -> Looks {
+    let count = texels.len() as f64;
+    let (mut sums, mut has_alpha) = ([0.0; 3], false);
     for texel in texels {
-        for (sum, &channel) in sums.iter_mut().zip(texel) {
-            *sum += u64::from(channel);
+        has_alpha |= texel[3] < 1.0;
+        for (sum, value) in sums.iter_mut().zip(texel) {
+            *sum += value;
         }
     }
-    let [r, g, b] = sums.map(|sum| sum / texels.len() as u64);
-    match (96..160).contains(&r) && (96..160).contains(&g) && b > 192 {
-        true => Looks::Normals,
-        false => Looks::Other,
+    let [r, g, b] = sums.map(|sum| sum / count);
+    let is_half = |mean: f64| (0.4..0.6).contains(&mean);
+    Looks {
+        are_directions: is_half(r) && is_half(g) && b > 0.75,
+        has_alpha,
     }
 }
 
