@@ -393,10 +393,12 @@ fn broken_numbers_cost_one_statement_and_not_the_library() {
 }
 
 #[test]
-fn a_gain_is_a_factor_of_colours() {
+fn a_gain_is_a_factor_of_colours_and_other_options_are_said_to_be_ignored() {
     let (darker, scene) = material("Kd 1 0.5 0\nmap_Kd -mm 0 0.5 white.png");
     assert_eq!(phong(&darker).diffuse.factor, [0.5, 0.25, 0.0]);
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let (_, scene) = material("map_Kd -imfchan g white.png");
+    assert!(warns(&scene, "m", "-imfchan of map_kd is ignored"));
     let (_, scene) = material("map_d -mm 0 0.5 white.png");
     assert!(warns(&scene, "m", "-mm of \"white.png\" is ignored"));
 }

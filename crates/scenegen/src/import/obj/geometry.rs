@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::corner::Corner;
 use super::vertex_colors::VertexColors;
@@ -10,6 +10,8 @@ use super::vertex_colors::VertexColors;
 /// What an OBJ file says.
 #[derive(Default)]
 pub(super) struct Geometry {
+    /// What positions are relative to.
+    pub(super) origin: DVec3,
     /// `v`; NaN where a line has no numbers.
     pub(super) positions: Vec<Vec3>,
     /// Colours behind `v`.

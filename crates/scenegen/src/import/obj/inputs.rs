@@ -33,6 +33,10 @@ impl Inputs<'_, '_> {
         black: BlackBesideMap,
     ) -> ColorInput {
         let map = self.statements.map(map_key, ImageRole::Factors);
+        if map.as_ref().is_some_and(|map| map.channel.is_some()) {
+            let message = format!("-imfchan of {map_key} is ignored");
+            self.statements.warn(message);
+        }
         let gain = map.as_ref().map_or(1.0, |map| map.gain);
         let texture = map.map(|map| {
             self.textures

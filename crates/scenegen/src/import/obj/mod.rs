@@ -28,6 +28,7 @@ mod mtl;
 mod names;
 mod numbers;
 mod occurrences;
+mod origin;
 mod parser;
 mod part_mesh;
 mod references;

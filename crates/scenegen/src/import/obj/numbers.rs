@@ -1,12 +1,22 @@
 //! Numbers as programs print them.
 
-/// Reads a finite number; one with a decimal comma, as programs of some languages write, counts.
+use std::str::FromStr;
+
+/// Reads a number that 32 bits can hold; one with a decimal comma, as programs of some languages write, counts.
 pub(super) fn parse(word: &str) -> Option<f32> {
-    let number = match word.contains(',') && !word.contains('.') {
-        true => word.replacen(',', ".", 1).parse(),
-        false => word.parse(),
-    };
-    number.ok().filter(|number: &f32| number.is_finite())
+    read(word).filter(|number: &f32| number.is_finite())
+}
+
+/// The same, exactly.
+pub(super) fn parse_exactly(word: &str) -> Option<f64> {
+    read(word).filter(|number: &f64| number.abs() <= f64::from(f32::MAX))
+}
+
+fn read<N: FromStr>(word: &str) -> Option<N> {
+    match word.contains(',') && !word.contains('.') {
+        true => word.replacen(',', ".", 1).parse().ok(),
+        false => word.parse().ok(),
+    }
 }
 
 #[cfg(test)]
@@ -23,6 +33,7 @@ mod tests {
             ("1,25", 1.25),
         ] {
             assert_eq!(parse(word), Some(value), "{word}");
+            assert_eq!(parse_exactly(word).unwrap() as f32, value);
         }
         for word in [
             "nan",
@@ -39,7 +50,7 @@ mod tests {
             "3.1+e2",
             ",",
         ] {
-            assert_eq!(parse(word), None, "{word}");
+            assert_eq!((parse(word), parse_exactly(word)), (None, None), "{word}");
         }
     }
 }

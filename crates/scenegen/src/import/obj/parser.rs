@@ -2,14 +2,14 @@
 //!
 //! A line that makes no sense costs what it says and not the file: a vertex, a face, or an attribute of a corner.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::corner::Corner;
 use super::geometry::{Face, Geometry, NamedMaterial, Part};
 use super::lines::{comment_start, line_place, statements, words};
-use super::numbers;
 use super::occurrences::Occurrences;
 use super::vertex_colors::VertexColors;
+use super::{numbers, origin};
 use crate::import::budget::Budget;
 use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
@@ -26,12 +26,19 @@ pub(super) fn parse(
         parser.statement(statement.line, &keyword, rest, budget, warnings)?;
     }
     parser.warn(warnings);
-    Ok(parser.geometry)
+    let (origin, positions) = origin::relative(&parser.positions);
+    Ok(Geometry {
+        origin,
+        positions,
+        ..parser.geometry
+    })
 }
 
 #[derive(Default)]
 struct Parser {
+    /// But for the positions.
     geometry: Geometry,
+    positions: Vec<DVec3>,
     part_name: String,
     material: Option<usize>,
     smoothing_group: u32,
@@ -68,7 +75,7 @@ impl Parser {
     ) -> Result<(), Fault> {
         match keyword {
             "v" => {
-                budget.charge(1, size_of::<Vec3>() as u64, keyword)?;
+                budget.charge(1, size_of::<(DVec3, Vec3)>() as u64, keyword)?;
                 self.vertex(line, rest);
                 if self.geometry.colors.is_some() {
                     budget.charge(1, VertexColors::BYTES, keyword)?;
@@ -81,11 +88,11 @@ impl Parser {
                     self.faults.bad_texture_coordinates.note(line);
                 }
                 // OBJ's v grows upwards.
-                self.geometry.uvs.push(Vec2::new(u, 1.0 - v));
+                self.geometry.uvs.push(Vec2::new(u as f32, 1.0 - v as f32));
             }
             "vn" => {
                 budget.charge(1, size_of::<Vec3>() as u64, keyword)?;
-                let normal = Vec3::from(self.numbers(line, rest, 3));
+                let normal = DVec3::from(self.numbers(line, rest, 3)).as_vec3();
                 if normal.is_nan() {
                     self.faults.bad_normals.note(line);
                 }
@@ -134,25 +141,25 @@ impl Parser {
 
     /// The first numbers of a statement, NaN where there is none; those from index `required` on may be missing and
     /// are 0.
-    fn numbers<const N: usize>(&mut self, line: usize, rest: &str, required: usize) -> [f32; N] {
+    fn numbers<const N: usize>(&mut self, line: usize, rest: &str, required: usize) -> [f64; N] {
         let mut words = words(rest);
         std::array::from_fn(|index| match words.next() {
             Some(word) => self.number(line, word),
-            None if index < required => f32::NAN,
+            None if index < required => f64::NAN,
             None => 0.0,
         })
     }
 
-    fn number(&mut self, line: usize, word: &str) -> f32 {
+    fn number(&mut self, line: usize, word: &str) -> f64 {
         if word.contains(',') {
             self.faults.decimal_commas.note(line);
         }
-        numbers::parse(word).unwrap_or(f32::NAN)
+        numbers::parse_exactly(word).unwrap_or(f64::NAN)
     }
 
     /// Three numbers, and behind them nothing, a weight or a colour.
     fn vertex(&mut self, line: usize, rest: &str) {
-        let position = Vec3::from(self.numbers(line, rest, 3));
+        let position = DVec3::from(self.numbers(line, rest, 3));
         if position.is_nan() {
             self.faults.bad_vertices.note(line);
         }
@@ -179,19 +186,17 @@ impl Parser {
                 if beyond.is_some() {
                     self.faults.extra_numbers.note(line);
                 }
-                Some([r, g, b].map(|word| self.number(line, word)))
+                Some([r, g, b].map(|word| self.number(line, word) as f32))
             }
         };
-        self.geometry
-            .colors
-            .push(color, self.geometry.positions.len());
-        self.geometry.positions.push(position);
+        self.geometry.colors.push(color, self.positions.len());
+        self.positions.push(position);
     }
 
     fn face(&mut self, line: usize, rest: &str, budget: &mut Budget) -> Result<(), Fault> {
         let geometry = &mut self.geometry;
         let counts = [
-            geometry.positions.len(),
+            self.positions.len(),
             geometry.uvs.len(),
             geometry.normals.len(),
         ];

@@ -142,7 +142,7 @@ fn build(
             &scene.meshes,
             scene.meshes.len() - 1,
             &part.name,
-            &DAffine3::IDENTITY,
+            &DAffine3::from_translation(geometry.origin),
             &place,
             warnings,
         ));
