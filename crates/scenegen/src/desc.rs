@@ -204,7 +204,7 @@ pub struct MaterialDesc {
 pub enum SurfaceDesc {
     /// glTF 2.0, appendix B, with KHR_materials_specular, _ior, _transmission, _volume (thickness only).
     MetallicRoughness(MetallicRoughness),
-    /// OBJ: Lambert plus normalised Phong.
+    /// OBJ: Lambert plus normalised Phong. The two reflect no more than arrives.
     Phong(PhongSurface),
     /// OBJ `illum` 3, 5, 8: Lambert plus a perfect mirror. The two reflect no more than arrives.
     Mirror {
@@ -222,7 +222,7 @@ pub enum SurfaceDesc {
         /// Squares from 0 to 1, along u and v.
         squares: [f32; 2],
     },
-    /// OBJ `illum` 4, 6, 7, 9 or `Tf`/`d` with refraction: a smooth dielectric.
+    /// OBJ `illum` 4, 6, 7, 9 or a coloured `Tf`: a smooth dielectric.
     Dielectric {
         /// Index of refraction.
         ior: f32,
@@ -274,7 +274,7 @@ pub struct MeshDesc {
     /// Vertices.
     pub positions: Vec<Vec3>,
     /// Unit shading normals. Importers make flat ones (by splitting vertices) where a glTF file has none,
-    /// as its specification says, and likewise for OBJ.
+    /// as its specification says, and likewise for OBJ without smoothing groups.
     pub normals: Vec<Vec3>,
     /// Unit tangents with the bitangent's sign in w. Present only where the material has a normal map.
     pub tangents: Option<Vec<Vec4>>,

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses some of them")]
 
 pub(crate) mod gltf_text;
+pub(crate) mod obj_text;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -4,9 +4,11 @@
 
 mod finish;
 mod normals;
+mod polygon;
 mod raw;
 mod tangents;
 mod vertices;
 
 pub(super) use finish::finish;
+pub(super) use polygon::{Coverage, Triangulator, vector_area};
 pub(super) use raw::RawMesh;

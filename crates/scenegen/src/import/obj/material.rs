@@ -1,12 +1,13 @@
 //! One MTL material: its statements as a description.
 
+use super::illumination::Illumination;
+use super::inputs::{BlackBesideMap, Inputs, constant, uniform};
 use super::statements::Statements;
 use super::textures::Textures;
+use super::transparency::{self, Transparency};
 use crate::desc::{
-    AlphaMode, ColorInput, MaterialDesc, NormalMap, PhongSurface, ScalarInput, SurfaceDesc,
-    TextureUse,
+    AlphaMode, ColorInput, MaterialDesc, MetallicRoughness, PhongSurface, ScalarInput, SurfaceDesc,
 };
-use crate::import::images::ImageRole;
 
 /// Reflectance where a file gives none.
 const GREY: f32 = 0.8;
@@ -14,217 +15,154 @@ const GREY: f32 = 0.8;
 /// The index of refraction where a file gives none.
 const DEFAULT_IOR: f32 = 1.5;
 
-/// What the number behind `illum` asks for.
-#[derive(Clone, Copy, PartialEq)]
-enum Illumination {
-    /// 0 and 1.
-    Diffuse,
-    /// 2, and those whose difference from it is not rendered.
-    Highlight,
-    /// 3, 5 and 8, "reflection on".
-    Reflection,
-    /// 4, "transparency: glass".
-    Glass,
-    /// 6, 7 and 9.
-    Refraction,
-}
+/// The exponent of a highlight where a file gives none.
+const DEFAULT_EXPONENT: f32 = 30.0;
 
-impl Illumination {
-    fn new(illum: f32) -> Self {
-        if illum < 2.0 {
-            Self::Diffuse
-        } else if [3.0, 5.0, 8.0].contains(&illum) {
-            Self::Reflection
-        } else if illum == 4.0 {
-            Self::Glass
-        } else if [6.0, 7.0, 9.0].contains(&illum) {
-            Self::Refraction
-        } else {
-            Self::Highlight
-        }
-    }
-}
+/// The exponent where a map of exponents is white and no number stands beside it: the largest that the format knows.
+const LARGEST_EXPONENT: f32 = 1000.0;
+
+/// `illum` 3, 5 and 8 are a mirror from this exponent on. Programs write `illum` 3 for every metal, and exponents up to
+/// 1000 for how smooth it is.
+const MIRROR_EXPONENT: f32 = 900.0;
 
 /// Reads a material.
 pub(super) fn read(statements: Statements<'_>, textures: &mut Textures<'_>) -> MaterialDesc {
-    let reader = Reader {
+    let inputs = &mut Inputs {
         statements,
         textures,
     };
-    reader.material()
-}
-
-struct Reader<'r, 'a> {
-    statements: Statements<'r>,
-    textures: &'r mut Textures<'a>,
-}
-
-impl Reader<'_, '_> {
-    fn material(mut self) -> MaterialDesc {
-        let illumination = Illumination::new(self.statements.number("illum").unwrap_or(2.0));
-        let diffuse = self.color("kd", "map_kd", GREY);
-        let emission = self.color("ke", "map_ke", 0.0);
-        let alpha_map = self.scalar_map("map_d");
-        let opacity = self.opacity();
-        let ior = self.statements.number("ni");
-
-        let refracts = ior.is_some_and(|ior| ior > 1.0);
-        let is_glass = match illumination {
-            // Maya and others write `illum 4`, `Ni 1` and `d 1` for every opaque material.
-            Illumination::Glass => opacity < 1.0 || refracts,
-            Illumination::Refraction => true,
-            Illumination::Diffuse | Illumination::Highlight | Illumination::Reflection => {
-                opacity < 1.0 && refracts && alpha_map.is_none()
-            }
-        };
-        let surface = if is_glass {
-            SurfaceDesc::Dielectric {
-                ior: self.valid_ior(ior),
-                transmittance: self.statements.color("tf").unwrap_or([1.0; 3]),
-            }
-        } else if illumination == Illumination::Reflection {
-            self.mirror(diffuse)
-        } else {
-            SurfaceDesc::Phong(self.phong(diffuse, illumination))
-        };
-        let (alpha_mode, alpha) = if is_glass {
-            (AlphaMode::Opaque, constant(1.0))
-        } else {
-            self.alpha(opacity, alpha_map)
-        };
-        self.statements.warn_about_unsupported();
-        MaterialDesc {
-            name: self.statements.name().to_owned(),
-            surface,
-            emission,
-            alpha_mode,
-            alpha,
-            normal_map: self.normal_map(),
-            double_sided: true,
+    let illumination = Illumination::new(inputs.statements.number("illum").unwrap_or(2.0));
+    let (surface, alpha) = match transparency::read(inputs, illumination) {
+        Transparency::Dissolve { opacity } => {
+            let surface = opaque_surface(inputs, illumination);
+            let texture = inputs.alpha_map();
+            let factor = opacity;
+            (surface, ScalarInput { factor, texture })
         }
+        Transparency::Glass { tint } => (glass(inputs, tint), constant(1.0)),
+    };
+    let emission = inputs.color("ke", "map_ke", 0.0, BlackBesideMap::Nothing);
+    let normal_map = inputs.normal_map();
+    inputs.statements.warn_about_unread();
+    MaterialDesc {
+        name: inputs.statements.material().name.clone(),
+        surface,
+        emission,
+        alpha_mode: match alpha.factor < 1.0 || alpha.texture.is_some() {
+            true => AlphaMode::Blend,
+            false => AlphaMode::Opaque,
+        },
+        alpha,
+        normal_map,
+        double_sided: true,
     }
+}
 
-    fn phong(&mut self, diffuse: ColorInput, illumination: Illumination) -> PhongSurface {
-        let specular = self.color("ks", "map_ks", 0.0);
-        let black = ColorInput {
-            factor: [0.0; 3],
-            texture: None,
-        };
-        let texture = self.scalar_map("map_ns");
-        let factor = self.statements.number("ns").unwrap_or(1.0).max(0.0);
-        PhongSurface {
+/// A smooth dielectric. Its highlights are reflections, which `Ni` gives.
+fn glass(inputs: &mut Inputs<'_, '_>, transmittance: [f32; 3]) -> SurfaceDesc {
+    inputs.statements.dismiss(&["ks", "map_ks", "ns", "map_ns"]);
+    SurfaceDesc::Dielectric {
+        ior: ior(inputs),
+        transmittance,
+    }
+}
+
+fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> SurfaceDesc {
+    let diffuse = inputs.color("kd", "map_kd", GREY, BlackBesideMap::Nothing);
+    if ["pr", "pm", "map_pr", "map_pm"]
+        .into_iter()
+        .any(|key| inputs.statements.has(key))
+    {
+        return metallic_roughness(inputs, diffuse);
+    }
+    let specular = match illumination {
+        Illumination::Diffuse => {
+            inputs.statements.dismiss(&["ks", "map_ks", "ns", "map_ns"]);
+            uniform(0.0)
+        }
+        _ => inputs.color("ks", "map_ks", 0.0, BlackBesideMap::Black),
+    };
+    let has_specular = specular.factor != [0.0; 3];
+    let exponent_map = inputs.scalar_map("map_ns");
+    let exponent = inputs.statements.number("ns");
+    let is_smooth = exponent.is_none_or(|exponent| exponent >= MIRROR_EXPONENT);
+    if illumination == Illumination::Reflection && is_smooth && exponent_map.is_none() {
+        return SurfaceDesc::Mirror {
             diffuse,
-            specular: match illumination {
-                Illumination::Diffuse => black,
-                _ => specular,
-            },
-            exponent: ScalarInput { factor, texture },
-        }
-    }
-
-    /// What `Ks` is the colour of comes from the mirrored direction.
-    fn mirror(&mut self, mut diffuse: ColorInput) -> SurfaceDesc {
-        let mut reflectance = self.color("ks", "map_ks", 0.0);
-        let sums = [0, 1, 2].map(|k| diffuse.factor[k] + reflectance.factor[k]);
-        let largest = sums.into_iter().fold(0.0, f32::max);
-        if largest > 1.0 {
-            self.statements.warn(format!(
-                "Kd and Ks reflect {largest} times what arrives; both are divided by that"
-            ));
-            for factor in [&mut diffuse.factor, &mut reflectance.factor] {
-                *factor = factor.map(|value| value / largest);
-            }
-        }
-        SurfaceDesc::Mirror {
-            diffuse,
-            reflectance,
-        }
-    }
-
-    /// `d`, or 1 − `Tr` where there is only that.
-    fn opacity(&mut self) -> f32 {
-        let opacity = self.statements.number("d").or_else(|| {
-            let transparency = self.statements.number("tr");
-            transparency.map(|transparency| 1.0 - transparency)
-        });
-        opacity.unwrap_or(1.0).clamp(0.0, 1.0)
-    }
-
-    fn alpha(&self, opacity: f32, map: Option<(TextureUse, usize)>) -> (AlphaMode, ScalarInput) {
-        let mode = if opacity < 1.0 || map.is_some() {
-            AlphaMode::Blend
-        } else {
-            AlphaMode::Opaque
+            reflectance: specular,
         };
-        // Masks are grey images, except where the colour's own alpha is meant.
-        let texture = map.map(|(texture, channel)| {
-            let is_own_alpha = self.statements.name_one_file("map_d", "map_kd");
-            (texture, if is_own_alpha { 3 } else { channel })
-        });
-        let alpha = ScalarInput {
-            factor: opacity,
-            texture,
-        };
-        (mode, alpha)
     }
-
-    fn valid_ior(&mut self, ior: Option<f32>) -> f32 {
-        match ior {
-            Some(ior) if ior > 0.0 => ior,
-            Some(ior) => {
-                self.statements
-                    .warn(format!("Ni {ior} is not positive; {DEFAULT_IOR} is used"));
-                DEFAULT_IOR
-            }
-            None => DEFAULT_IOR,
-        }
+    let factor = exponent.unwrap_or(match exponent_map {
+        Some(_) => LARGEST_EXPONENT,
+        None => DEFAULT_EXPONENT,
+    });
+    if has_specular && exponent.is_none() {
+        inputs
+            .statements
+            .warn(format!("Ks without Ns: an exponent of {factor} is used"));
     }
-
-    /// A colour and its texture; without a colour, 1 where there is a texture and `default` elsewhere.
-    fn color(&mut self, key: &str, map_key: &str, default: f32) -> ColorInput {
-        let map = self.statements.map(map_key, ImageRole::Factors);
-        let texture = map.map(|map| {
-            self.textures
-                .add(&map, ImageRole::Factors, &self.statements.place)
-        });
-        let given = self.statements.color(key);
-        if texture.is_some() && given == Some([0.0; 3]) {
-            self.statements
-                .warn(format!("{map_key} has no effect, as {key} is 0"));
-        }
-        let default = if texture.is_some() { 1.0 } else { default };
-        let factor = given.unwrap_or([default; 3]);
-        if factor.iter().any(|&value| value < 0.0) {
-            self.statements
-                .warn(format!("{key} has negative values; 0 is used"));
-        }
-        ColorInput {
-            factor: factor.map(|value| value.max(0.0)),
-            texture,
-        }
+    if factor < 0.0 {
+        inputs
+            .statements
+            .warn(format!("Ns {factor} is negative; 0 is used"));
     }
-
-    /// A texture with the channel that is read.
-    fn scalar_map(&mut self, key: &str) -> Option<(TextureUse, usize)> {
-        let map = self.statements.map(key, ImageRole::Factors)?;
-        let place = &self.statements.place;
-        let texture = self.textures.add(&map, ImageRole::Factors, place);
-        Some((texture, map.channel))
-    }
-
-    fn normal_map(&mut self) -> Option<NormalMap> {
-        let map = self.statements.map("norm", ImageRole::Normals)?;
-        let place = &self.statements.place;
-        Some(NormalMap {
-            texture: self.textures.add(&map, ImageRole::Normals, place),
-            scale: map.bump_scale.unwrap_or(1.0),
-        })
-    }
+    SurfaceDesc::Phong(PhongSurface {
+        diffuse,
+        specular,
+        exponent: ScalarInput {
+            factor: factor.max(0.0),
+            texture: exponent_map,
+        },
+    })
 }
 
-fn constant(factor: f32) -> ScalarInput {
-    ScalarInput {
-        factor,
-        texture: None,
+/// `Pr` and `Pm`, the extension for physically based materials, are the roughness and metalness of glTF; `Ks` and `Ns`
+/// are there for programs that do not know them.
+fn metallic_roughness(inputs: &mut Inputs<'_, '_>, base_color: ColorInput) -> SurfaceDesc {
+    inputs
+        .statements
+        .dismiss(&["ks", "map_ks", "ns", "map_ns", "pcr"]);
+    for (key, what) in [
+        ("ps", "sheen"),
+        ("pc", "a clear coat"),
+        ("aniso", "anisotropy"),
+        ("anisor", "anisotropy"),
+    ] {
+        if inputs
+            .statements
+            .number(key)
+            .is_some_and(|value| value != 0.0)
+        {
+            inputs
+                .statements
+                .warn(format!("{key}: {what} is not rendered"));
+        }
+    }
+    let ior = match inputs.statements.number("ni") {
+        Some(ior) if ior > 1.0 => ior,
+        _ => DEFAULT_IOR,
+    };
+    SurfaceDesc::MetallicRoughness(MetallicRoughness {
+        base_color,
+        metallic: inputs.fraction_input("pm", "map_pm", 0.0),
+        roughness: inputs.fraction_input("pr", "map_pr", 0.5),
+        ior,
+        specular: constant(1.0),
+        specular_color: uniform(1.0),
+        transmission: constant(0.0),
+        solid: false,
+    })
+}
+
+fn ior(inputs: &mut Inputs<'_, '_>) -> f32 {
+    match inputs.statements.number("ni") {
+        Some(ior) if ior > 0.0 => ior,
+        Some(ior) => {
+            inputs
+                .statements
+                .warn(format!("Ni {ior} is not positive; {DEFAULT_IOR} is used"));
+            DEFAULT_IOR
+        }
+        None => DEFAULT_IOR,
     }
 }

@@ -1,12 +1,12 @@
-//! The materials of the libraries, read as models ask for them.
+//! The materials of the libraries, read as parts of the geometry ask for them.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::material;
 use super::mtl::MtlMaterial;
 use super::statements::Statements;
 use super::textures::Textures;
+use super::{energy, material};
 use crate::desc::{ImageDesc, MaterialDesc, TextureDesc};
 use crate::import::warnings::Warnings;
 
@@ -15,47 +15,67 @@ pub(super) struct Materials<'a> {
     library: &'a [MtlMaterial],
     textures: Textures<'a>,
     list: Vec<MaterialDesc>,
-    /// From indices in `library`, of which `None` is a grey default, to those in `list`.
-    indices: BTreeMap<Option<usize>, usize>,
+    /// Where those of `list` stand.
+    places: Vec<String>,
+    /// To indices in `list`.
+    indices: BTreeMap<Source, usize>,
+}
+
+/// Where a material comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Source {
+    /// An index in the library.
+    Library(usize),
+    /// A grey default.
+    Grey,
+    /// A white one, for vertices that have colours.
+    White,
 }
 
 impl<'a> Materials<'a> {
-    /// None yet; textures are looked for from `folder`.
+    /// None yet; textures are looked for from `folder` if a library's own has none.
     pub(super) fn new(library: &'a [MtlMaterial], folder: &'a Path) -> Self {
         Self {
             library,
             textures: Textures::new(folder),
             list: Vec::new(),
+            places: Vec::new(),
             indices: BTreeMap::new(),
         }
     }
 
-    /// A material of the library with its index in the scene; `None` is a grey default.
+    /// A material with its index in the scene.
     pub(super) fn get(
         &mut self,
-        index: Option<usize>,
+        source: Source,
         warnings: &mut Warnings,
     ) -> (usize, &MaterialDesc) {
-        let index = index.filter(|&index| index < self.library.len());
-        let in_scene = match self.indices.get(&index) {
+        let index = match self.indices.get(&source) {
             Some(&known) => known,
             None => {
-                let unnamed = MtlMaterial::unnamed();
-                let source = index.map_or(&unnamed, |index| &self.library[index]);
-                let statements = Statements::new(source, warnings);
-                let material = material::read(statements, &mut self.textures);
-                self.list.push(material);
-                self.indices.insert(index, self.list.len() - 1);
+                let default = match source {
+                    Source::White => MtlMaterial::white(),
+                    Source::Grey | Source::Library(_) => MtlMaterial::grey(),
+                };
+                let material = match source {
+                    Source::Library(index) => &self.library[index],
+                    Source::Grey | Source::White => &default,
+                };
+                self.places.push(material.place());
+                let statements = Statements::new(material, warnings);
+                self.list
+                    .push(material::read(statements, &mut self.textures));
+                self.indices.insert(source, self.list.len() - 1);
                 self.list.len() - 1
             }
         };
-        (in_scene, &self.list[in_scene])
+        (index, &self.list[index])
     }
 
     /// Says which materials of the libraries are not in use.
     pub(super) fn dismiss_unused(&self, warnings: &mut Warnings) {
         for (index, material) in self.library.iter().enumerate() {
-            if !self.indices.contains_key(&Some(index)) {
+            if !self.indices.contains_key(&Source::Library(index)) {
                 warnings.dismiss(None, material.place(), "no face uses it");
             }
         }
@@ -63,10 +83,11 @@ impl<'a> Materials<'a> {
 
     /// The materials, their textures, and the images decoded.
     pub(super) fn finish(
-        self,
+        mut self,
         warnings: &mut Warnings,
     ) -> (Vec<MaterialDesc>, Vec<TextureDesc>, Vec<ImageDesc>) {
         let (textures, images) = self.textures.finish(warnings);
+        energy::conserve(&mut self.list, &self.places, &textures, &images, warnings);
         (self.list, textures, images)
     }
 }

@@ -1,14 +1,13 @@
 //! MTL material libraries: which keyword stands on which line.
 //!
-//! Read here and not by tobj, which drops a whole library for one short line, has no line numbers and knows
-//! neither `Tf`, `Tr`, `norm` nor the options before a texture's name.
+//! Read here and not by another crate: those drop a whole library for one short line, have no line numbers and
+//! know neither `Tf`, `Tr`, `norm` nor the options before a texture's name.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::find::find_loosely;
-use super::lines::{line_place, split_keyword};
-use crate::import::files;
+use super::lines::{line_place, statements};
+use super::numbers;
 use crate::import::warnings::Warnings;
 
 /// A material as its lines say.
@@ -18,16 +17,38 @@ pub(super) struct MtlMaterial {
     pub(super) name: String,
     /// Library and line of `newmtl`.
     line: String,
+    /// Where its textures are looked for first.
+    pub(super) folder: PathBuf,
     /// Keyword in lower case → the rest of its last line.
     pub(super) statements: BTreeMap<String, String>,
+    /// What `Tr` means in the library.
+    pub(super) tr_meaning: TrMeaning,
+}
+
+/// What the number behind `Tr` is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum TrMeaning {
+    /// 1 − `d`, as most programs have it.
+    #[default]
+    Transparency,
+    /// `d`: programs that process scans write 1 for what is opaque.
+    Opacity,
 }
 
 impl MtlMaterial {
-    /// The material that no library has.
-    pub(super) fn unnamed() -> Self {
+    /// The material of faces without one.
+    pub(super) fn grey() -> Self {
         Self {
             name: "default".into(),
             ..Self::default()
+        }
+    }
+
+    /// The same where vertices have colours, which it leaves as they are.
+    pub(super) fn white() -> Self {
+        Self {
+            statements: [("kd".into(), "1".into())].into(),
+            ..Self::grey()
         }
     }
 
@@ -35,65 +56,46 @@ impl MtlMaterial {
     pub(super) fn place(&self) -> String {
         format!("{} \"{}\"", self.line, self.name.escape_debug())
     }
+
+    /// `Tr`, where `d` does not say how opaque the material is.
+    fn lone_tr(&self) -> Option<f32> {
+        let has_d = self.statements.contains_key("d");
+        let tr = self.statements.get("tr").filter(|_| !has_d)?;
+        numbers::parse(tr.split_whitespace().next()?)
+    }
 }
 
-/// Loads the libraries named by one `mtllib` line; those that are missing are warned about.
-pub(super) fn load(
-    names: &str,
-    folder: &Path,
-    place: &str,
+/// Reads a library's text; `library` is its name for messages, `folder` where it lies.
+pub(super) fn parse(
+    text: &str,
+    library: &str,
+    folder: &std::path::Path,
     warnings: &mut Warnings,
 ) -> Vec<MtlMaterial> {
-    // The specification separates several libraries by spaces, while exporters write names with spaces.
-    let paths: Vec<(String, Option<PathBuf>)> = match find_loosely(names, folder) {
-        Some(path) => vec![(names.to_owned(), Some(path))],
-        None => names
-            .split_whitespace()
-            .map(|name| (name.to_owned(), find_loosely(name, folder)))
-            .collect(),
-    };
-    let mut materials = Vec::new();
-    for (name, path) in paths {
-        let read = path
-            .ok_or("is not there".to_owned())
-            .and_then(|path| files::read(&path));
-        match read {
-            Ok(bytes) => parse(
-                &String::from_utf8_lossy(&bytes),
-                &name,
-                &mut materials,
-                warnings,
-            ),
-            Err(problem) => warnings.push(
-                place,
-                format!("material library \"{name}\" {problem}; left out"),
-            ),
-        }
-    }
-    materials
-}
-
-fn parse(text: &str, library: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut Warnings) {
-    let start = materials.len();
-    for (index, line) in text.lines().enumerate() {
-        let (keyword, rest) = split_keyword(line);
-        if keyword.is_empty() || keyword.starts_with('#') {
-            continue;
-        }
-        let place = || format!("{library} {}", line_place(index));
-        if keyword.eq_ignore_ascii_case("newmtl") {
+    let mut materials: Vec<MtlMaterial> = Vec::new();
+    for statement in statements(text) {
+        let (keyword, rest) = statement.split();
+        let place = || format!("{library} {}", line_place(statement.line));
+        if keyword == "newmtl" {
             if rest.is_empty() {
                 warnings.push(place(), "newmtl without a name");
             }
             materials.push(MtlMaterial {
                 name: rest.to_owned(),
                 line: place(),
-                statements: BTreeMap::new(),
+                folder: folder.to_owned(),
+                ..MtlMaterial::default()
             });
-        } else if let Some(material) = materials[start..].last_mut() {
-            material
+        } else if let Some(material) = materials.last_mut() {
+            let previous = material
                 .statements
-                .insert(keyword.to_ascii_lowercase(), rest.to_owned());
+                .insert(keyword.to_string(), rest.to_owned());
+            if previous.is_some_and(|previous| previous != rest) {
+                warnings.push(
+                    place(),
+                    format!("{keyword} stands there again; the last one counts"),
+                );
+            }
         } else {
             warnings.push(
                 place(),
@@ -101,4 +103,15 @@ fn parse(text: &str, library: &str, materials: &mut Vec<MtlMaterial>, warnings: 
             );
         }
     }
+    let has_tr = |value| {
+        materials
+            .iter()
+            .any(|material| material.lone_tr() == Some(value))
+    };
+    if has_tr(1.0) && !has_tr(0.0) {
+        for material in &mut materials {
+            material.tr_meaning = TrMeaning::Opacity;
+        }
+    }
+    materials
 }

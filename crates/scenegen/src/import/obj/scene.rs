@@ -1,14 +1,16 @@
 //! An OBJ file as a scene description: the pieces of this folder put together.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use glam::DAffine3;
 
+use super::geometry::{Geometry, NamedMaterial, Part};
+use super::libraries::Libraries;
 use super::lines::line_place;
-use super::materials::Materials;
-use super::mtl::MtlMaterial;
-use super::{models, source};
+use super::materials::{Materials, Source};
+use super::part_mesh::PartMeshes;
+use super::{parser, references, text};
 use crate::desc::{MeshDesc, SceneDesc};
 use crate::import::budget::Budget;
 use crate::import::error::{Fault, ImportError, MAKE_SMALLER};
@@ -16,8 +18,11 @@ use crate::import::instances::place_mesh;
 use crate::import::warnings::Warnings;
 use crate::import::{files, mesh};
 
-/// tobj needs several times a file's size.
+/// What is made of a file needs several times its size.
 const MAX_OBJ_BYTES: usize = 256 << 20;
+
+/// Bytes of a triangle's corner, if it shares its vertex with no other: an index, and a vertex without tangent.
+const CORNER_BYTES: u64 = 4 + 14 * 4;
 
 /// Reads an `.obj` file and its material libraries.
 pub(in crate::import) fn import(
@@ -28,61 +33,105 @@ pub(in crate::import) fn import(
         file: file.to_owned(),
         message,
     })?;
-    let folder = file.parent().unwrap_or(Path::new(""));
-    read(bytes, folder, warnings).map_err(|fault| fault.in_file(file))
+    read(bytes, file, warnings).map_err(|fault| fault.in_file(file))
 }
 
-fn read(bytes: Vec<u8>, folder: &Path, warnings: &mut Warnings) -> Result<SceneDesc, Fault> {
+fn read(bytes: Vec<u8>, file: &Path, warnings: &mut Warnings) -> Result<SceneDesc, Fault> {
     if bytes.len() > MAX_OBJ_BYTES {
         let problem = format!("{} bytes are more than the 256 MiB we read", bytes.len());
         return Err(Fault::new("file", problem).advise(MAKE_SMALLER));
     }
-    let source = source::clean(&bytes, warnings)?;
-    drop(bytes);
-    let (models, library) = models::load(&source.text, folder, warnings)?;
-    warn_about_unknown_materials(&source.used_materials, &library, warnings);
-    build(models, &library, folder, warnings)
+    let mut budget = Budget::geometry();
+    let mut geometry = parser::parse(&text::decode(bytes), &mut budget, warnings)?;
+    references::check(&mut geometry, warnings);
+    if geometry.faces.is_empty() && !geometry.positions.is_empty() {
+        let message = format!(
+            "{} vertices and no face: points are not rendered",
+            geometry.positions.len()
+        );
+        warnings.push("v", message);
+    }
+    geometry.colors.linearize(warnings);
+    let libraries = Libraries::load(&geometry, file, warnings);
+    let materials = find_materials(&geometry, &libraries, warnings);
+    let folder = file.parent().unwrap_or(Path::new(""));
+    build(&geometry, &libraries, &materials, folder, budget, warnings)
 }
 
-/// Once for each name: files repeat it thousands of times.
-fn warn_about_unknown_materials(
-    used: &[(usize, String)],
-    library: &[MtlMaterial],
+/// The material of each `usemtl`, by index in the libraries. Files repeat names thousands of times: each is looked up and
+/// complained about once.
+fn find_materials(
+    geometry: &Geometry,
+    libraries: &Libraries,
     warnings: &mut Warnings,
-) {
-    let mut known: HashSet<&str> = library
-        .iter()
-        .map(|material| material.name.as_str())
-        .collect();
-    for (line, name) in used {
-        if known.insert(name) {
-            warnings.push(
-                line_place(*line),
-                format!("material \"{name}\" is in no library; grey is used"),
-            );
-        }
-    }
+) -> Vec<Option<usize>> {
+    let mut known: HashMap<(&str, usize), Option<usize>> = HashMap::new();
+    let mut said: HashSet<&str> = HashSet::new();
+    let find = |named: &NamedMaterial| {
+        let found = libraries.find(named);
+        let problem = match &found {
+            None => Some("is in no library; grey is used".to_owned()),
+            Some(found) if found.is_guess => {
+                let name = libraries.materials[found.index].name.escape_debug();
+                Some(format!("is in no library; \"{name}\" is used"))
+            }
+            Some(_) => None,
+        };
+        (found.map(|found| found.index), problem)
+    };
+    let materials = geometry.materials.iter().map(|named| {
+        let key = (named.name.as_str(), named.libraries_before);
+        *known.entry(key).or_insert_with(|| {
+            let (index, problem) = find(named);
+            if let Some(problem) = problem
+                && said.insert(&named.name)
+            {
+                let name = named.name.escape_debug();
+                let message = format!("material \"{name}\" {problem}");
+                warnings.push(line_place(named.line), message);
+            }
+            index
+        })
+    });
+    materials.collect()
 }
 
 fn build(
-    models: Vec<tobj::Model>,
-    library: &[MtlMaterial],
+    geometry: &Geometry,
+    libraries: &Libraries,
+    used: &[Option<usize>],
     folder: &Path,
+    mut budget: Budget,
     warnings: &mut Warnings,
 ) -> Result<SceneDesc, Fault> {
     let mut scene = SceneDesc::default();
-    let mut materials = Materials::new(library, folder);
-    let mut budget = Budget::geometry();
-    for model in models
-        .into_iter()
-        .filter(|model| !model.mesh.indices.is_empty())
+    let mut materials = Materials::new(&libraries.materials, folder);
+    let mut meshes = PartMeshes::new(geometry);
+    for part in geometry
+        .parts
+        .iter()
+        .filter(|part| corner_count(geometry, part) > 0)
     {
-        let place = format!("o \"{}\"", model.name.escape_debug());
-        budget.charge(model.mesh.indices.len() as u64, 4 + 14 * 4, &place)?;
-        let raw = models::raw_mesh(&model.mesh, &place, warnings);
-        let (material_index, material) = materials.get(model.mesh.material_id, warnings);
-        let name = model.name.clone();
-        let Some(mesh) = mesh::finish(raw, name, material, &place, &mut budget, warnings)? else {
+        let place = format!("o \"{}\"", part.name.escape_debug());
+        budget.charge(corner_count(geometry, part), CORNER_BYTES, &place)?;
+        let part_mesh = meshes.mesh(part);
+        let source = match part.material.and_then(|index| used[index]) {
+            Some(index) => Source::Library(index),
+            None if part_mesh.raw.colors.is_some() => Source::White,
+            None => Source::Grey,
+        };
+        let (material_index, material) = materials.get(source, warnings);
+        if part_mesh.corners_without_uv > 0 && material.textures().next().is_some() {
+            let message = format!(
+                "{} corners lack texture coordinates; (0, 0) is used",
+                part_mesh.corners_without_uv
+            );
+            warnings.push(&*place, message);
+        }
+        let name = part.name.clone();
+        let Some(mesh) =
+            mesh::finish(part_mesh.raw, name, material, &place, &mut budget, warnings)?
+        else {
             continue;
         };
         scene.meshes.push(MeshDesc {
@@ -92,13 +141,25 @@ fn build(
         scene.instances.extend(place_mesh(
             &scene.meshes,
             scene.meshes.len() - 1,
-            &model.name,
-            &DAffine3::IDENTITY,
+            &part.name,
+            &DAffine3::from_translation(geometry.origin),
             &place,
             warnings,
         ));
     }
+    let message =
+        "polygons cross themselves or have too many corners; triangles do not cover them exactly";
+    meshes.approximate.warn(message, warnings);
     materials.dismiss_unused(warnings);
     (scene.materials, scene.textures, scene.images) = materials.finish(warnings);
     Ok(scene)
+}
+
+/// Corners of a part's triangles.
+fn corner_count(geometry: &Geometry, part: &Part) -> u64 {
+    let counts = geometry
+        .faces(part)
+        .iter()
+        .map(|face| geometry.corners(face).len());
+    counts.map(|count| 3 * count.saturating_sub(2) as u64).sum()
 }

@@ -1,16 +1,25 @@
 //! The statements of one MTL material as values.
 
+use std::collections::BTreeSet;
+
+use super::lines::words;
 use super::map_statement::MapStatement;
-use super::mtl::MtlMaterial;
+use super::mtl::{MtlMaterial, TrMeaning};
+use super::numbers;
 use crate::import::images::ImageRole;
 use crate::import::warnings::Warnings;
 
-/// Reads a material's statements. What cannot be used is warned about when it is asked for, so that nothing
-/// is said about statements that the material does without.
+/// Statements that nothing rendered depends on: ambient light, which global illumination replaces, and the sharpness
+/// of reflection maps. `Ni` belongs to glass, and is written for every material.
+const WITHOUT_EFFECT: [&str; 5] = ["ka", "illum", "sharpness", "map_aat", "ni"];
+
+/// Reads a material's statements. What cannot be used is warned about when it is asked for, and what nobody has asked
+/// for in [`Self::warn_about_unread`].
 pub(super) struct Statements<'r> {
     material: &'r MtlMaterial,
     /// Where the material stands.
     pub(super) place: String,
+    read: BTreeSet<&'static str>,
     warnings: &'r mut Warnings,
 }
 
@@ -20,13 +29,19 @@ impl<'r> Statements<'r> {
         Self {
             material,
             place: material.place(),
+            read: WITHOUT_EFFECT.into(),
             warnings,
         }
     }
 
-    /// What `newmtl` called the material.
-    pub(super) fn name(&self) -> &'r str {
-        &self.material.name
+    /// The material.
+    pub(super) fn material(&self) -> &'r MtlMaterial {
+        self.material
+    }
+
+    /// What `Tr` means.
+    pub(super) fn tr_meaning(&self) -> TrMeaning {
+        self.material.tr_meaning
     }
 
     /// Warns about the material.
@@ -34,40 +49,64 @@ impl<'r> Statements<'r> {
         self.warnings.push(&*self.place, message);
     }
 
+    /// Whether there is a statement.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.material.statements.contains_key(key)
+    }
+
     /// The first number of a statement.
-    pub(super) fn number(&mut self, key: &str) -> Option<f32> {
+    pub(super) fn number(&mut self, key: &'static str) -> Option<f32> {
         self.color(key).map(|[value, _, _]| value)
     }
 
-    /// Up to three numbers; a single one stands for all three, as the specification says.
-    pub(super) fn color(&mut self, key: &str) -> Option<[f32; 3]> {
+    /// Up to three numbers; a single one stands for all three, as the specification says. `xyz` before them makes them
+    /// CIE colours.
+    pub(super) fn color(&mut self, key: &'static str) -> Option<[f32; 3]> {
+        self.read.insert(key);
         let text = self.material.statements.get(key)?;
-        let text = text.split('#').next().unwrap_or_default();
-        let words: Vec<&str> = text.split_whitespace().collect();
-        // `-halo`, of `d -halo 0.5`, changes with the angle; the number is what remains.
-        let words = words.strip_prefix(&["-halo"]).unwrap_or(&words);
-        let numbers: Vec<f32> = words
+        let words: Vec<&str> = words(text).collect();
+        let (option, words) = match words[..] {
+            [option @ ("-halo" | "xyz" | "spectral"), ref words @ ..] => (option, words),
+            _ => ("", &words[..]),
+        };
+        match option {
+            "-halo" => self.warn(format!("-halo of {key} is ignored")),
+            "spectral" => {
+                self.warn(format!(
+                    "{key} \"{text}\" is a file of spectra, which are not read; it is ignored"
+                ));
+                return None;
+            }
+            _ => {}
+        }
+        let numbers: Vec<Option<f32>> = words
             .iter()
             .take(3)
-            .map_while(|word| word.parse().ok())
+            .map(|word| numbers::parse(word))
             .collect();
         let values = match numbers[..] {
-            [r, g, b] => [r, g, b],
-            [value, ..] => [value; 3],
-            [] => {
+            [Some(r), Some(g), Some(b)] => [r, g, b],
+            [Some(r), Some(g)] => {
+                self.warn(format!(
+                    "{key} \"{text}\" lacks a third number; the second is used"
+                ));
+                [r, g, g]
+            }
+            [Some(value)] => [value; 3],
+            _ => {
                 self.warn(format!("{key} \"{text}\" is not a number and ignored"));
                 return None;
             }
         };
-        if !values.iter().all(|value| value.is_finite()) {
-            self.warn(format!("{key} \"{text}\" is not finite and ignored"));
-            return None;
-        }
-        Some(values)
+        Some(match option {
+            "xyz" => from_xyz(values),
+            _ => values,
+        })
     }
 
     /// A texture's statement.
-    pub(super) fn map(&mut self, key: &str, role: ImageRole) -> Option<MapStatement> {
+    pub(super) fn map(&mut self, key: &'static str, role: ImageRole) -> Option<MapStatement> {
+        self.read.insert(key);
         let map = MapStatement::parse(self.material.statements.get(key)?);
         if map.file.is_empty() {
             self.warn(format!("{key} names no file"));
@@ -92,19 +131,30 @@ impl<'r> Statements<'r> {
         file(key) == file(other)
     }
 
-    /// Warns about statements that ask for what is not rendered.
-    pub(super) fn warn_about_unsupported(&mut self) {
-        for key in self.material.statements.keys() {
-            match key.as_str() {
-                "map_bump" | "bump" => {
-                    self.warn(format!("{key}: height maps are not supported and ignored"));
-                }
-                "disp" | "decal" | "refl" | "pr" | "pm" | "ps" | "pc" | "pcr" | "aniso"
-                | "map_pr" | "map_pm" | "map_ps" | "map_tr" => {
-                    self.warn(format!("{key} is not supported and ignored"));
-                }
-                _ => {}
-            }
+    /// Says nothing about statements that another one makes void.
+    pub(super) fn dismiss(&mut self, keys: &[&'static str]) {
+        self.read.extend(keys);
+    }
+
+    /// Warns about the statements that have no part in what is rendered.
+    pub(super) fn warn_about_unread(&mut self) {
+        if self.name_one_file("map_ka", "map_kd") {
+            self.read.insert("map_ka");
+        }
+        let keys = self.material.statements.keys().map(String::as_str);
+        let unread: Vec<&str> = keys.filter(|key| !self.read.contains(key)).collect();
+        if !unread.is_empty() {
+            let message = format!("not rendered and ignored: {}", unread.join(", "));
+            self.warn(message);
         }
     }
+}
+
+/// CIE XYZ with white D65 as linear Rec. 709 (IEC 61966-2-1).
+fn from_xyz([x, y, z]: [f32; 3]) -> [f32; 3] {
+    [
+        3.240_97 * x - 1.537_383_2 * y - 0.498_610_76 * z,
+        -0.969_243_6 * x + 1.875_967_5 * y + 0.041_555_06 * z,
+        0.055_630_08 * x - 0.203_976_96 * y + 1.056_971_5 * z,
+    ]
 }

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::find::find_loosely;
+use super::find::Finder;
 use super::map_statement::MapStatement;
-use crate::desc::{Filter, ImageDesc, TextureDesc, TextureUse, UvTransform};
+use super::statements::Statements;
+use crate::desc::{Filter, ImageDesc, Texels, TextureDesc, TextureUse, UvTransform};
 use crate::import::files;
 use crate::import::images::{self, ImageRequest, ImageRole};
 use crate::import::warnings::Warnings;
@@ -18,23 +19,42 @@ pub(super) struct Textures<'a> {
     requests: Vec<ImageRequest<'static>>,
     /// From paths, or the names of missing files, to indices of `requests`.
     image_indices: BTreeMap<PathBuf, usize>,
+    /// By path, what has been looked at.
+    looks: BTreeMap<PathBuf, Looks>,
+    finder: Finder,
+}
+
+/// What the texels of an image look like.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Looks {
+    /// Red and green are a half on average, and blue is more: directions in tangent space.
+    pub(super) are_directions: bool,
+    /// Some alpha is below 1.
+    pub(super) has_alpha: bool,
 }
 
 impl<'a> Textures<'a> {
-    /// None yet; files are looked for from `folder`.
+    /// None yet; files are looked for from `folder`, if the library's own has none.
     pub(super) fn new(folder: &'a Path) -> Self {
         Self {
             folder,
             list: Vec::new(),
             requests: Vec::new(),
             image_indices: BTreeMap::new(),
+            looks: BTreeMap::new(),
+            finder: Finder::new(),
         }
     }
 
-    /// Registers a use of a texture by the material at `place`.
-    pub(super) fn add(&mut self, map: &MapStatement, role: ImageRole, place: &str) -> TextureUse {
+    /// Registers a use of a texture.
+    pub(super) fn add(
+        &mut self,
+        map: &MapStatement,
+        role: ImageRole,
+        user: &mut Statements<'_>,
+    ) -> TextureUse {
         let texture = TextureDesc {
-            image: self.image(&map.file, role, place),
+            image: self.image(&map.file, role, user),
             wrap: [map.wrap; 2],
             filter: Filter::Linear,
         };
@@ -50,8 +70,32 @@ impl<'a> Textures<'a> {
         }
     }
 
-    fn image(&mut self, file: &str, role: ImageRole, place: &str) -> usize {
-        let path = find_loosely(file, self.folder);
+    /// What an image looks like, for statements whose meaning depends on that.
+    pub(super) fn look_at(&mut self, map: &MapStatement, user: &Statements<'_>) -> Looks {
+        let Some(Location { path, .. }) = self.locate(&map.file, user) else {
+            return Looks::default();
+        };
+        if let Some(&known) = self.looks.get(&path) {
+            return known;
+        }
+        let decoded =
+            files::read(&path).and_then(|bytes| images::decode_one(&bytes, extension(&path)));
+        let looks = decoded.map_or(Looks::default(), |decoded| looks(&decoded.texels));
+        self.looks.insert(path, looks);
+        looks
+    }
+
+    fn image(&mut self, file: &str, role: ImageRole, user: &mut Statements<'_>) -> usize {
+        let location = self.locate(file, user);
+        if let Some(Location {
+            path,
+            is_guess: true,
+        }) = &location
+        {
+            let shown = path.strip_prefix(self.folder).unwrap_or(path).display();
+            user.warn(format!("\"{file}\" is not there; \"{shown}\" is used"));
+        }
+        let path = location.map(|location| location.path);
         let key = path.clone().unwrap_or_else(|| PathBuf::from(file));
         if let Some(&known) = self.image_indices.get(&key) {
             return known;
@@ -60,21 +104,65 @@ impl<'a> Textures<'a> {
             Some(path) => files::read(&path).map(Cow::Owned),
             None => Err("is not there".into()),
         };
-        let extension = key.extension().and_then(|extension| extension.to_str());
         self.requests.push(ImageRequest {
             name: file.to_owned(),
-            place: format!("{place} \"{file}\""),
+            place: format!("{} \"{file}\"", user.place),
             bytes,
-            extension: extension.map(str::to_owned),
+            extension: extension(&key).map(str::to_owned),
             role,
         });
         self.image_indices.insert(key, self.requests.len() - 1);
         self.requests.len() - 1
     }
 
+    fn locate(&mut self, file: &str, user: &Statements<'_>) -> Option<Location> {
+        let folders = [&*user.material().folder, self.folder];
+        let location = |is_guess| move |path| Location { path, is_guess };
+        let found = self.finder.find(file, &folders).map(location(false));
+        found.or_else(|| self.finder.guess(file, &folders).map(location(true)))
+    }
+
     /// The textures, and the images decoded.
     pub(super) fn finish(self, warnings: &mut Warnings) -> (Vec<TextureDesc>, Vec<ImageDesc>) {
         (self.list, images::decode_all(self.requests, warnings))
+    }
+}
+
+/// Where an image is.
+struct Location {
+    path: PathBuf,
+    /// Whether its name says so only in part.
+    is_guess: bool,
+}
+
+fn extension(path: &Path) -> Option<&str> {
+    path.extension().and_then(|extension| extension.to_str())
+}
+
+fn looks(texels: &Texels) -> Looks {
+    match texels {
+        Texels::Rgba8(texels) => {
+            let texels = texels.iter();
+            looks_of(texels.map(|texel| texel.map(|code| f64::from(code) / 255.0)))
+        }
+        Texels::RgbaF32(texels) => looks_of(texels.iter().map(|texel| texel.map(f64::from))),
+    }
+}
+
+fn looks_of(texels: impl ExactSizeIterator<Item = [f64; 4]>) -> Looks {
+    let count = texels.len() as f64;
+    let (mut sums, mut has_alpha) = ([0.0; 3], false);
+    for texel in texels {
+        has_alpha |= texel[3] < 1.0;
+        for (sum, value) in sums.iter_mut().zip(texel) {
+            *sum += value;
+        }
+    }
+    let [r, g, b] = sums.map(|sum| sum / count);
+    let is_half = |mean: f64| (0.4..0.6).contains(&mean);
+    Looks {
+        are_directions: is_half(r) && is_half(g) && b > 0.75,
+        has_alpha,
     }
 }
 

@@ -1,0 +1,162 @@
+//! Inputs of materials: numbers, colours and directions with their textures.
+
+use super::map_statement::MapStatement;
+use super::statements::Statements;
+use super::textures::Textures;
+use crate::desc::{ColorInput, NormalMap, ScalarInput, TextureUse};
+use crate::import::images::ImageRole;
+
+/// Reads the inputs of one material.
+pub(super) struct Inputs<'r, 'a> {
+    /// What it says.
+    pub(super) statements: Statements<'r>,
+    /// Those of all materials.
+    pub(super) textures: &'r mut Textures<'a>,
+}
+
+/// What black is that stands beside a texture.
+#[derive(Clone, Copy)]
+pub(super) enum BlackBesideMap {
+    /// What programs write that know the texture only: the texture counts.
+    Nothing,
+    /// Black.
+    Black,
+}
+
+impl Inputs<'_, '_> {
+    /// A colour and its texture; without a colour, 1 where there is a texture and `default` elsewhere.
+    pub(super) fn color(
+        &mut self,
+        key: &'static str,
+        map_key: &'static str,
+        default: f32,
+        black: BlackBesideMap,
+    ) -> ColorInput {
+        let map = self.statements.map(map_key, ImageRole::Factors);
+        if map.as_ref().is_some_and(|map| map.channel.is_some()) {
+            let message = format!("-imfchan of {map_key} is ignored");
+            self.statements.warn(message);
+        }
+        let gain = map.as_ref().map_or(1.0, |map| map.gain);
+        let texture = map.map(|map| {
+            self.textures
+                .add(&map, ImageRole::Factors, &mut self.statements)
+        });
+        let mut given = self.statements.color(key);
+        if texture.is_some() && given == Some([0.0; 3]) {
+            self.statements.warn(match black {
+                BlackBesideMap::Nothing => {
+                    given = None;
+                    format!("{key} 0 would make {map_key} black; 1 is used")
+                }
+                BlackBesideMap::Black => format!("{map_key} has no effect, as {key} is 0"),
+            });
+        }
+        let default = if texture.is_some() { 1.0 } else { default };
+        let factor = given.unwrap_or([default; 3]).map(|value| value * gain);
+        if factor.iter().any(|&value| value < 0.0) {
+            self.statements
+                .warn(format!("{key} has negative values; 0 is used"));
+        }
+        ColorInput {
+            factor: factor.map(|value| value.max(0.0)),
+            texture,
+        }
+    }
+
+    /// A number from 0 to 1.
+    pub(super) fn fraction(&mut self, key: &'static str) -> Option<f32> {
+        let value = self.statements.number(key)?;
+        if !(0.0..=1.0).contains(&value) {
+            self.statements
+                .warn(format!("{key} {value} is outside of 0 to 1 and clamped"));
+        }
+        Some(value.clamp(0.0, 1.0))
+    }
+
+    /// The same with a texture; without a number, 1 where there is a texture and `default` elsewhere.
+    pub(super) fn fraction_input(
+        &mut self,
+        key: &'static str,
+        map_key: &'static str,
+        default: f32,
+    ) -> ScalarInput {
+        let texture = self.scalar_map(map_key);
+        let default = if texture.is_some() { 1.0 } else { default };
+        let factor = self.fraction(key).unwrap_or(default);
+        ScalarInput { factor, texture }
+    }
+
+    /// A colour without values outside of 0 to 1.
+    pub(super) fn at_most_1(&mut self, key: &str, color: [f32; 3]) -> [f32; 3] {
+        let clamped = color.map(|value| value.clamp(0.0, 1.0));
+        if clamped != color {
+            self.statements.warn(format!(
+                "{key} has values outside of 0 to 1, which are clamped"
+            ));
+        }
+        clamped
+    }
+
+    /// A texture with the channel that is read.
+    pub(super) fn scalar_map(&mut self, key: &'static str) -> Option<(TextureUse, usize)> {
+        let map = self.statements.map(key, ImageRole::Factors)?;
+        let texture = self.scalar_texture(&map);
+        Some((texture, map.channel.unwrap_or(0)))
+    }
+
+    /// `map_d`. Masks are grey images, except where the colour's own alpha is meant or the image has one.
+    pub(super) fn alpha_map(&mut self) -> Option<(TextureUse, usize)> {
+        let map = self.statements.map("map_d", ImageRole::Factors)?;
+        let channel = match map.channel {
+            Some(channel) => channel,
+            None if self.statements.name_one_file("map_d", "map_kd") => 3,
+            None if self.textures.look_at(&map, &self.statements).has_alpha => 3,
+            None => 0,
+        };
+        Some((self.scalar_texture(&map), channel))
+    }
+
+    fn scalar_texture(&mut self, map: &MapStatement) -> TextureUse {
+        if map.gain != 1.0 {
+            let message = format!("-mm of \"{}\" is ignored", map.file);
+            self.statements.warn(message);
+        }
+        self.textures
+            .add(map, ImageRole::Factors, &mut self.statements)
+    }
+
+    /// `norm`, or a bump map that is a map of normals, as some programs write them.
+    pub(super) fn normal_map(&mut self) -> Option<NormalMap> {
+        let keys = ["norm", "map_bump", "bump"];
+        let key = keys.into_iter().find(|key| self.statements.has(key))?;
+        let map = self.statements.map(key, ImageRole::Normals)?;
+        if key != "norm" && !self.textures.look_at(&map, &self.statements).are_directions {
+            self.statements
+                .warn(format!("{key}: height maps are not supported and ignored"));
+            return None;
+        }
+        Some(NormalMap {
+            texture: self
+                .textures
+                .add(&map, ImageRole::Normals, &mut self.statements),
+            scale: map.bump_scale.unwrap_or(1.0),
+        })
+    }
+}
+
+/// A number without a texture.
+pub(super) fn constant(factor: f32) -> ScalarInput {
+    ScalarInput {
+        factor,
+        texture: None,
+    }
+}
+
+/// A grey without a texture.
+pub(super) fn uniform(factor: f32) -> ColorInput {
+    ColorInput {
+        factor: [factor; 3],
+        texture: None,
+    }
+}
