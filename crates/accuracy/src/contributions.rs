@@ -1,8 +1,13 @@
 //! What each pixel says of its error, relative to the square of its mean: the parts of an estimate.
 
+use rayon::prelude::*;
+
 use crate::moments::{CHANNELS, MeanVariance, halves_of};
-use crate::plausible::Plausible;
+use crate::plausible::plausible;
 use crate::sampled::{Replicate, Sampled};
+
+/// Pixels that a thread takes at a time.
+pub(crate) const CHUNK: usize = 4096;
 
 /// Of an image, by channel.
 #[derive(Clone, Debug)]
@@ -31,26 +36,14 @@ pub(crate) struct Twice {
 impl Contributions {
     pub(crate) fn of(width: usize, pixels: &[Sampled<'_>], replicates: &[Replicate<'_>]) -> Self {
         let count = pixels.len() as f64;
-        let mut images = [(); 3].map(|()| Vec::with_capacity(pixels.len()));
-        let mut sum = [0.0; CHANNELS];
-        for pixel in pixels {
-            let (all, halves) = pixel.moments.statistics(pixel.samples);
-            for (image, mean) in images
-                .iter_mut()
-                .zip([all.mean, halves[0].mean, halves[1].mean])
-            {
-                image.push(mean.map(|mean| mean as f32));
-            }
-            for (sum, mean) in sum.iter_mut().zip(all.mean) {
-                *sum += mean;
-            }
-        }
+        let mut images = [(); 3].map(|()| vec![[0.0; CHANNELS]; pixels.len()]);
+        let sum = means(pixels, &mut images);
         let mean = sum.map(|sum| sum / count);
         let color = (mean[0] + mean[1] + mean[2]) / 3.0;
         let floor = [color, color, color, mean[3]].map(|mean| 1e-2 * mean * mean);
         // One over the squared mean of a pixel, as far as that is plausible.
         let scale = |image: &[[f32; CHANNELS]], p: usize, mean: [f64; CHANNELS]| {
-            let mean = Plausible::around(image, width, p).limit(mean);
+            let mean = plausible(image, width, p, mean);
             let mut weight = [0.0; CHANNELS];
             for k in 0..CHANNELS {
                 let squared = mean[k] * mean[k] + floor[k];
@@ -58,32 +51,47 @@ impl Contributions {
             }
             weight
         };
-
-        let mut contributions = Self {
-            of_pixels: Vec::with_capacity(pixels.len()),
-            of_replicates: Vec::with_capacity(replicates.len()),
+        let nothing = || Self {
+            of_pixels: Vec::new(),
+            of_replicates: Vec::new(),
             plain: [0.0; CHANNELS],
             jackknifed: [0.0; CHANNELS],
             products: [0.0; CHANNELS],
         };
-        for (p, pixel) in pixels.iter().enumerate() {
-            let one_over = 1.0 / pixel.samples as f64;
-            let statistics = pixel.moments.statistics(pixel.samples);
-            let (all, halves) = &statistics;
-            let weight = scale(&images[0], p, all.mean);
-            let of_halves = [0, 1].map(|half| scale(&images[1 + half], p, halves[half].mean));
-            let jackknifed = jackknifed(pixel.samples, &statistics, weight, of_halves);
-            let mut contribution = [0.0; CHANNELS];
-            for k in 0..CHANNELS {
-                let plain = all.variance[k] * one_over * weight[k];
-                let product = halves[0].variance[k] * halves[1].variance[k];
-                let squared_weight = (weight[k] * one_over) * (weight[k] * one_over);
-                contributions.plain[k] += plain;
-                contributions.products[k] += 2.0 * product * squared_weight;
-                contributions.jackknifed[k] += jackknifed[k];
-                contribution[k] = plain as f32;
+
+        // Sums are chunk by chunk, so that they do not depend on threads.
+        let of_chunk = |(first, chunk): (usize, &[Sampled<'_>])| {
+            let mut contributions = nothing();
+            for (p, pixel) in (first * CHUNK..).zip(chunk) {
+                let one_over = 1.0 / pixel.samples as f64;
+                let statistics = pixel.moments.statistics(pixel.samples);
+                let (all, halves) = &statistics;
+                let weight = scale(&images[0], p, all.mean);
+                let of_halves = [0, 1].map(|half| scale(&images[1 + half], p, halves[half].mean));
+                let jackknifed = jackknifed(pixel.samples, &statistics, weight, of_halves);
+                let mut contribution = [0.0; CHANNELS];
+                for k in 0..CHANNELS {
+                    let plain = all.variance[k] * one_over * weight[k];
+                    let product = halves[0].variance[k] * halves[1].variance[k];
+                    let squared_weight = (weight[k] * one_over) * (weight[k] * one_over);
+                    contributions.plain[k] += plain;
+                    contributions.products[k] += 2.0 * product * squared_weight;
+                    contributions.jackknifed[k] += jackknifed[k];
+                    contribution[k] = plain as f32;
+                }
+                contributions.of_pixels.push(contribution);
             }
-            contributions.of_pixels.push(contribution);
+            contributions
+        };
+        let chunks: Vec<_> = pixels.par_chunks(CHUNK).enumerate().map(of_chunk).collect();
+        let mut contributions = nothing();
+        for chunk in chunks {
+            contributions.of_pixels.extend(chunk.of_pixels);
+            for k in 0..CHANNELS {
+                contributions.plain[k] += chunk.plain[k];
+                contributions.jackknifed[k] += chunk.jackknifed[k];
+                contributions.products[k] += chunk.products[k];
+            }
         }
         for k in 0..CHANNELS {
             contributions.plain[k] /= count;
@@ -112,6 +120,28 @@ impl Contributions {
             }));
         contributions
     }
+}
+
+/// The means of all samples, of the even and of the odd ones; their sums over all pixels.
+fn means(pixels: &[Sampled<'_>], images: &mut [Vec<[f32; CHANNELS]>; 3]) -> [f64; CHANNELS] {
+    let [all, even, odd] = images.each_mut().map(|image| image.par_chunks_mut(CHUNK));
+    let chunks = pixels.par_chunks(CHUNK).zip(all).zip(even).zip(odd);
+    let sums: Vec<_> = chunks
+        .map(|(((pixels, all), even), odd)| {
+            let mut sum = [0.0; CHANNELS];
+            for (p, pixel) in pixels.iter().enumerate() {
+                let (of_all, of_halves) = pixel.moments.statistics(pixel.samples);
+                all[p] = of_all.mean.map(|mean| mean as f32);
+                even[p] = of_halves[0].mean.map(|mean| mean as f32);
+                odd[p] = of_halves[1].mean.map(|mean| mean as f32);
+                sum = std::array::from_fn(|k| sum[k] + of_all.mean[k]);
+            }
+            sum
+        })
+        .collect();
+    sums.into_iter().fold([0.0; CHANNELS], |sum, of_chunk| {
+        std::array::from_fn(|k| sum[k] + of_chunk[k])
+    })
 }
 
 /// Variance over the number of samples times a weight, by the jackknife of halves, each of which has its own weight.

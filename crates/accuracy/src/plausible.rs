@@ -9,8 +9,7 @@ use crate::moments::CHANNELS;
 type Channels = [f32; CHANNELS];
 
 /// What a pixel's neighbours say of it, by channel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Plausible {
+struct Plausible {
     /// The mean of the second and third brightest of its eight neighbours.
     bright: Channels,
     /// As far above that as three times its distance to their median: noise hardly gets there.
@@ -18,38 +17,10 @@ pub(crate) struct Plausible {
 }
 
 impl Plausible {
-    /// What the neighbours of pixel `p` say, in an image of `width` pixels a row. Everything is plausible where it is less than
-    /// three pixels wide or high. Outside of the image, the nearest pixels inside stand in.
+    /// What the neighbours say.
     #[inline(always)]
-    pub(crate) fn around(image: &[Channels], width: usize, p: usize) -> Self {
-        let height = image.len() / width;
-        if width < 3 || height < 3 {
-            return Self {
-                bright: [f32::MAX; CHANNELS],
-                most: [f32::MAX; CHANNELS],
-            };
-        }
-        let (x, y) = (p % width, p / width);
-        let [left, right] = [
-            if x > 0 { x - 1 } else { 1 },
-            if x + 1 < width { x + 1 } else { width - 2 },
-        ];
-        let [above, beside, below] = [
-            if y > 0 { y - 1 } else { 1 },
-            y,
-            if y + 1 < height { y + 1 } else { height - 2 },
-        ]
-        .map(|row| &image[row * width..][..width]);
-        let sorted = sorted([
-            above[left],
-            above[x],
-            above[right],
-            beside[left],
-            beside[right],
-            below[left],
-            below[x],
-            below[right],
-        ]);
+    fn of(neighbors: [Channels; 8]) -> Self {
+        let sorted = sorted(neighbors);
         let mut said = Self {
             bright: [0.0; CHANNELS],
             most: [0.0; CHANNELS],
@@ -62,9 +33,9 @@ impl Plausible {
         said
     }
 
-    /// The pixel's mean, or, where that is implausible, what it would be as one of its bright neighbours.
+    /// The mean, or, where that is implausible, what it would be as one of its bright neighbours.
     #[inline(always)]
-    pub(crate) fn limit(&self, mean: [f64; CHANNELS]) -> [f64; CHANNELS] {
+    fn limit(&self, mean: [f64; CHANNELS]) -> [f64; CHANNELS] {
         let mut limited = mean;
         for k in 0..CHANNELS {
             if mean[k] > f64::from(self.most[k]) {
@@ -73,6 +44,53 @@ impl Plausible {
         }
         limited
     }
+}
+
+/// A mean of pixel `p` of an image of `width` pixels a row, as far as its neighbours make it plausible. Everything is plausible
+/// where the image is less than three pixels wide or high. Outside of the image, the nearest pixels inside stand in.
+#[inline(always)]
+pub(crate) fn plausible(
+    image: &[Channels],
+    width: usize,
+    p: usize,
+    mean: [f64; CHANNELS],
+) -> [f64; CHANNELS] {
+    let height = image.len() / width;
+    if width < 3 || height < 3 {
+        return mean;
+    }
+    let (x, y) = (p % width, p / width);
+    let [left, right] = [
+        if x > 0 { x - 1 } else { 1 },
+        if x + 1 < width { x + 1 } else { width - 2 },
+    ];
+    let [above, beside, below] = [
+        if y > 0 { y - 1 } else { 1 },
+        y,
+        if y + 1 < height { y + 1 } else { height - 2 },
+    ]
+    .map(|row| &image[row * width..][..width]);
+    let neighbors = [
+        above[left],
+        above[x],
+        above[right],
+        beside[left],
+        beside[right],
+        below[left],
+        below[x],
+        below[right],
+    ];
+    // Where three are as bright, the limit is above the mean: no need to sort.
+    let mut as_bright = [0; CHANNELS];
+    for neighbor in &neighbors {
+        for k in 0..CHANNELS {
+            as_bright[k] += i32::from(f64::from(neighbor[k]) >= mean[k]);
+        }
+    }
+    if as_bright.iter().all(|count| *count >= 3) {
+        return mean;
+    }
+    Plausible::of(neighbors).limit(mean)
 }
 
 /// Eight numbers in ascending order, by a network of comparisons (Knuth, *The Art of Computer Programming* 3, 5.3.4), for each
@@ -114,7 +132,6 @@ fn sorted(mut values: [Channels; 8]) -> [Channels; 8] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::moments::Y;
 
     #[test]
     fn a_speck_is_implausible_and_an_edge_is_not() {
@@ -134,23 +151,20 @@ mod tests {
             } else {
                 value
             };
-            let said = Plausible::around(&image, 8, p);
-            assert_eq!(said.limit(value), expected, "pixel {p}");
+            assert_eq!(plausible(&image, 8, p, value), expected, "pixel {p}");
         }
     }
 
     #[test]
     fn limits_are_of_the_bright_neighbours() {
         let image = [9.0, 1.0, 2.0, 3.0, 100.0, 8.0, 0.0, 7.0, 4.0].map(|value| [value; CHANNELS]);
-        let said = Plausible::around(&image, 3, 4);
+        // The bright neighbours are 7 and 8, the median is 3.5.
+        let most = 7.5 + 3.0 * (7.5 - 3.5);
+        let limited = plausible(&image, 3, 4, [most, most + 0.1, 1.0, 30.0]);
+        assert_eq!(limited, [most, 7.5, 1.0, 7.5]);
         assert_eq!(
-            (said.bright[Y], said.most[Y]),
-            (7.5, 7.5 + 3.0 * (7.5 - 3.5))
-        );
-        assert_eq!(said.limit([19.0, 20.0, 1.0, 30.0]), [19.0, 7.5, 1.0, 7.5]);
-        assert_eq!(
-            Plausible::around(&image[..2], 2, 1).limit([1e9; CHANNELS])[0],
-            1e9
+            plausible(&image[..2], 2, 1, [1e9; CHANNELS]),
+            [1e9; CHANNELS]
         );
     }
 
