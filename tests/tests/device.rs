@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use residual_device_cpu::{CpuDevice, LaneCount, TileJob, TileRenderer};
-use residual_render::film::Sampling;
+use residual_render::film::{Pass, SampleSet, Sampling, TileRect, TileSamples};
 use residual_render::passes::{Counters, RenderOptions};
 use residual_render::tracer::TracerOptions;
 use residual_scenegen::desc::{MaterialDesc, Projection, SceneDesc};
@@ -24,10 +24,22 @@ fn planned(scene: &SceneDesc) -> Plan {
     plan(scene, &options).unwrap()
 }
 
-fn job(tile: [u32; 4], samples: [u32; 2]) -> TileJob {
+fn tile([x, y, width, height]: [u32; 4], [first, count]: [u32; 2]) -> TileSamples {
+    TileSamples {
+        rect: TileRect {
+            x,
+            y,
+            width,
+            height,
+        },
+        pass: Pass { first, count },
+    }
+}
+
+fn job(tiles: &[TileSamples]) -> TileJob<'_> {
     TileJob {
-        tile,
-        samples,
+        tiles,
+        set: SampleSet::First,
         tracer: TracerOptions {
             image: SIZE,
             seed: 5,
@@ -35,17 +47,16 @@ fn job(tile: [u32; 4], samples: [u32; 2]) -> TileJob {
             roulette_from: 3,
             reach: f32::MAX,
         },
-        block: 1,
     }
 }
 
 /// Renders a job by interpretation: its colours by sample, row and column.
-fn colors(prepared: &Prepared<'_>, job: &TileJob) -> (Vec<[f32; 3]>, Counters) {
-    let count = job.rect().area() * job.samples[1] as usize;
+fn colors(prepared: &Prepared<'_>, job: &TileJob<'_>) -> (Vec<[f32; 3]>, Counters) {
+    let count = job.samples();
     // What was there before must not show.
     let mut radiance = vec![f32::NAN; 3 * count];
     let renderer = prepared.interpreter();
-    let counters = renderer.render_tile(&prepared.view(), job, &mut radiance);
+    let counters = renderer.render_tiles(&prepared.view(), job, &mut radiance);
     (radiance.as_chunks().0.to_vec(), counters)
 }
 
@@ -75,7 +86,9 @@ fn every_sample_of_every_pixel_is_taken_once() {
             let prepared = Prepared::new(&plan, lanes);
             for [width, height] in [[1, 1], [3, 5], [17, 9], [64, 64]] {
                 for samples in [1, 5] {
-                    let mut job = job([13, 7, width, height], [3, samples]);
+                    let tile = tile([13, 7, width, height], [3, samples]);
+                    let tiles = [tile, tile];
+                    let mut job = job(&tiles);
                     job.tracer.max_depth = 1;
                     let (colors, counters) = colors(&prepared, &job);
                     let what = format!("{} with {lanes} lanes: {job:?}", scene.name);
@@ -100,13 +113,14 @@ fn every_sample_of_every_pixel_is_taken_once() {
 #[test]
 fn jobs_longer_than_a_stream_are_those_of_their_parts() {
     let plan = planned(&fixtures::room());
-    let whole = job([13, 7, 64, 64], [2, 4]);
+    let tiles = [tile([13, 7, 64, 64], [2, 4])];
+    let whole = job(&tiles);
     let scalar = Prepared::new(&plan, LaneCount::One);
-    let mut expected = vec![[f32::NAN; 3]; whole.rect().area() * 4];
+    let mut expected = vec![[f32::NAN; 3]; whole.samples()];
     for sample in 0..4 {
         for (x, y) in (0..16).map(|part| (part % 4 * 16, part / 4 * 16)) {
-            let part = job([13 + x, 7 + y, 16, 16], [2 + sample, 1]);
-            let (colors, _) = colors(&scalar, &part);
+            let tiles = [tile([13 + x, 7 + y, 16, 16], [2 + sample, 1])];
+            let (colors, _) = colors(&scalar, &job(&tiles));
             for (row, colors) in (y..).zip(colors.chunks(16)) {
                 let at = ((sample * 64 + row) * 64 + x) as usize;
                 expected[at..at + colors.len()].copy_from_slice(colors);

@@ -285,7 +285,12 @@ impl TileRenderer for CasesRenderer {
         Layers::NONE
     }
 
-    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, samples: &mut [f32]) -> Counters {
+    fn render_tiles(
+        &self,
+        scene: &SceneView<'_>,
+        job: &TileJob<'_>,
+        samples: &mut [f32],
+    ) -> Counters {
         let cases = Cases {
             nodes: &self.nodes,
             attributes: black_box(TextureCoordinates.get()),

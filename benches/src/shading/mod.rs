@@ -16,6 +16,7 @@ use std::time::Instant;
 
 use residual_accuracy::Estimate;
 use residual_device_cpu::{Interpreter, LaneCount, SceneView, TileJob, TileRenderer};
+use residual_render::film::{Pass, SampleSet, TileRect, TileSamples};
 use residual_render::layer::Layers;
 use residual_render::program::{CameraNode, LightNode, Structure};
 use residual_render::sampler::AnySampler;
@@ -199,9 +200,21 @@ impl<'a> Contender<'a> {
     /// Nanoseconds of the shading stage a hit. Stages are timed by the clock on the wall; what other processes had of it is
     /// taken out evenly.
     fn run(&self, radiance: &mut [f32]) -> f64 {
+        let tile = TileSamples {
+            rect: TileRect {
+                x: 0,
+                y: 0,
+                width: SIDE,
+                height: SIDE,
+            },
+            pass: Pass {
+                first: 0,
+                count: SAMPLES,
+            },
+        };
         let job = TileJob {
-            tile: [0, 0, SIDE, SIDE],
-            samples: [0, SAMPLES],
+            tiles: &[tile],
+            set: SampleSet::First,
             tracer: TracerOptions {
                 image: [SIDE, SIDE],
                 seed: 0,
@@ -209,14 +222,13 @@ impl<'a> Contender<'a> {
                 roulette_from: 5,
                 reach: f32::MAX,
             },
-            block: 1,
         };
         let view = SceneView {
             buffers: self.data.buffers(),
             traversal: &self.hits,
         };
         let (wall, used) = (Instant::now(), thread_time());
-        let counters = self.renderer.render_tile(&view, &job, radiance);
+        let counters = self.renderer.render_tiles(&view, &job, radiance);
         let share = (thread_time() - used).as_secs_f64() / wall.elapsed().as_secs_f64();
         let hits = counters.camera_rays + counters.bounce_rays;
         counters.shade * share / hits as f64 * 1e9

@@ -1,7 +1,8 @@
-//! Where a tile's paths begin: the samples of its pixels, one after the other, in blocks of 4×4 pixels, whose rays stay
-//! together.
+//! Where a job's paths begin: tile after tile, the samples of its pixels, one after the other, in blocks of 4×4 pixels, whose rays
+//! stay together.
 
 use residual_render::domain::{Lanes, MAX_LANES};
+use residual_render::film::TileSamples;
 use residual_render::renderer::Renderer;
 use residual_render::tracer::Tracer;
 
@@ -13,13 +14,22 @@ const SIDE: usize = 4;
 
 /// The camera rays of a job that are yet to be made.
 pub(crate) struct CameraRays<'j> {
-    job: &'j TileJob,
+    job: &'j TileJob<'j>,
+    /// The tile whose turn it is, and the index of its first sample among those of the job.
+    tile: usize,
+    first: usize,
+    /// The next of its rays, those of blocks at its edges counted in full.
     next: usize,
 }
 
 impl<'j> CameraRays<'j> {
-    pub(crate) fn new(job: &'j TileJob) -> Self {
-        Self { job, next: 0 }
+    pub(crate) fn new(job: &'j TileJob<'j>) -> Self {
+        Self {
+            job,
+            tile: 0,
+            first: 0,
+            next: 0,
+        }
     }
 
     /// Makes rays until the stream is full or none are left.
@@ -31,12 +41,28 @@ impl<'j> CameraRays<'j> {
         tracer: &Sc::Tracer,
         paths: &mut PathStream,
     ) {
-        let job = self.job;
-        let (rect, set) = (job.rect(), job.set());
+        while paths.has_room()
+            && let Some(tile) = self.job.tiles.get(self.tile)
+        {
+            self.fill_from(d, tile, scene, tracer, paths);
+        }
+    }
+
+    /// Makes rays until the stream is full or the tile has no more.
+    #[inline(always)]
+    fn fill_from<D: Lanes, Sc: Renderer<D>>(
+        &mut self,
+        d: D,
+        tile: &TileSamples,
+        scene: &Sc,
+        tracer: &Sc::Tracer,
+        paths: &mut PathStream,
+    ) {
+        let (job, rect, pass) = (self.job, tile.rect, tile.pass);
         let (width, height) = (rect.width as usize, rect.height as usize);
         let blocks = (width.div_ceil(SIDE), height.div_ceil(SIDE));
         let places = blocks.0 * blocks.1 * SIDE * SIDE;
-        let end = places * job.samples[1] as usize;
+        let end = places * pass.count as usize;
         let mut columns = [0; MAX_LANES];
         let mut rows = [0; MAX_LANES];
         let mut samples = [0; MAX_LANES];
@@ -53,14 +79,19 @@ impl<'j> CameraRays<'j> {
                 let row = block / blocks.0 * SIDE + within / SIDE;
                 inside |= u32::from(column < width && row < height) << lane;
                 let place = [rect.x + column as u32, rect.y + row as u32];
-                [columns[lane], rows[lane]] = set.pixel(job.tracer.seed, place);
-                samples[lane] = ((sample * height + row) * width + column) as u32;
+                [columns[lane], rows[lane]] = job.set.pixel(job.tracer.seed, place);
+                samples[lane] = (self.first + (sample * height + row) * width + column) as u32;
             }
             let pixel = [&columns, &rows].map(|places| d.word(&places[..D::LANES]));
-            let of_pixel = d.uint(job.samples[0] + sample as u32);
+            let of_pixel = d.uint(pass.first + sample as u32);
             let path = tracer.on_emit(d, scene.camera(), pixel, of_pixel);
             paths.push(d, inside, &path, d.word(&samples[..D::LANES]));
             self.next += D::LANES;
+        }
+        if self.next >= end {
+            self.tile += 1;
+            self.first += tile.count();
+            self.next = 0;
         }
     }
 }

@@ -92,21 +92,29 @@ impl CpuDevice {
     ) -> Counters {
         let layers = renderer.layers();
         let counters = Mutex::new(Counters::default());
+        let jobs = jobs(tiles, self.threads());
         self.pool.install(|| {
-            tiles
-                .into_par_iter()
-                .for_each(|TilePass { set, tile, pass }| {
+            jobs.into_par_iter().for_each(|tiles| {
+                let set = tiles[0].set;
+                let parts: Vec<_> = tiles.iter().map(TilePass::samples).collect();
+                let job = TileJob {
+                    tiles: &parts,
+                    set,
+                    tracer: options.tracer(set),
+                };
+                let mut samples = vec![0.0; job.samples() * layers.stride()];
+                let mut did = renderer.render_tiles(scene, &job, &mut samples);
+                let film_start = Instant::now();
+                let mut rest = samples.as_slice();
+                for (TilePass { tile, .. }, part) in tiles.into_iter().zip(&parts) {
                     assert_eq!(tile.layers(), layers, "one film, one set of layers");
-                    let rect = tile.rect();
-                    let job = TileJob::new(rect, set, pass, options.tracer(set));
-                    let mut samples =
-                        vec![0.0; rect.area() * layers.stride() * pass.count as usize];
-                    let mut did = renderer.render_tile(scene, &job, &mut samples);
-                    let film_start = Instant::now();
-                    tile.add(&samples);
-                    did.film = film_start.elapsed().as_secs_f64();
-                    *counters.lock().expect("no tile panicked") += did;
-                });
+                    let (of_tile, others) = rest.split_at(part.count() * layers.stride());
+                    tile.add(of_tile);
+                    rest = others;
+                }
+                did.film = film_start.elapsed().as_secs_f64();
+                *counters.lock().expect("no tile panicked") += did;
+            });
         });
         counters.into_inner().expect("no tile panicked")
     }
@@ -130,4 +138,30 @@ impl CpuDevice {
         let (report, Ok(())) = render_passes(options, &mut film, pass, progress);
         (film, report)
     }
+}
+
+/// Fewest and most samples that make it worth to share streams: the last paths of a job leave them half empty.
+const SAMPLES_OF_JOB: [usize; 2] = [1 << 12, 1 << 16];
+
+/// Small tiles together, in jobs enough for all threads.
+fn jobs(tiles: Vec<TilePass<'_>>, threads: usize) -> Vec<Vec<TilePass<'_>>> {
+    let all: usize = tiles.iter().map(|tile| tile.samples().count()).sum();
+    let [fewest, most] = SAMPLES_OF_JOB;
+    let enough = (all / (4 * threads)).clamp(fewest, most);
+    let mut jobs: Vec<Vec<TilePass<'_>>> = Vec::new();
+    let mut of_last = usize::MAX;
+    for tile in tiles {
+        let count = tile.samples().count();
+        match jobs.last_mut() {
+            Some(job) if job[0].set == tile.set && of_last.saturating_add(count) <= enough => {
+                of_last += count;
+                job.push(tile);
+            }
+            _ => {
+                of_last = count;
+                jobs.push(vec![tile]);
+            }
+        }
+    }
+    jobs
 }

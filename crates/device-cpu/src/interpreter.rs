@@ -27,7 +27,12 @@ impl TileRenderer for Interpreter {
         self.structure.layers
     }
 
-    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, samples: &mut [f32]) -> Counters {
+    fn render_tiles(
+        &self,
+        scene: &SceneView<'_>,
+        job: &TileJob<'_>,
+        samples: &mut [f32],
+    ) -> Counters {
         let scene_from = &self.structure;
         match self.lanes {
             LaneCount::One => {

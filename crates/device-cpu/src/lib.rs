@@ -3,7 +3,7 @@
 //!
 //! [`TileRenderer`] is the seam: [`Interpreter`] runs a scene's structure as boxed nodes, [`compiled_scene!`] makes
 //! one from emitted code, and [`plugin`] loads one from a shared library. All three run the same
-//! [`tile::render_tile`] and give the same bits.
+//! [`tile::render_tiles`] and give the same bits.
 
 mod camera_rays;
 mod device;

@@ -1,6 +1,6 @@
 //! Renderers in shared libraries: emitted code, compiled, loaded and called.
 //!
-//! The boundary is C: one function that renders a tile, with pointers and lengths, and one that says what the library
+//! The boundary is C: one function that renders tiles, with pointers and lengths, and one that says what the library
 //! was made for. No Rust type with an unspecified layout crosses it.
 
 use std::ffi::{OsStr, c_void};
@@ -8,15 +8,17 @@ use std::{fmt, ptr, slice};
 
 use residual_bvh::{Hit, Ray};
 use residual_render::domain::{Buffer, Buffers};
+use residual_render::film::{SampleSet, TileSamples};
 use residual_render::layer::Layers;
 use residual_render::passes::Counters;
+use residual_render::tracer::TracerOptions;
 
 use crate::job::{SceneView, TileJob, TileRenderer};
 use crate::lanes::LaneCount;
 use crate::traversal::{AlphaFilter, Traversal};
 
 /// Raised whenever the layout of anything here or the meaning of buffers changes.
-const ABI_VERSION: u32 = 3;
+const ABI_VERSION: u32 = 4;
 
 /// What a library was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -229,13 +231,16 @@ impl Traversal for RawTraversal {
 pub struct TileCall {
     words: [RawSlice<u32>; Buffer::COUNT],
     traversal: RawTraversal,
-    job: TileJob,
+    tiles: RawSlice<TileSamples>,
+    /// Pixels along the side of the blocks of which each has one of the tiles' pixels; 1 if the tiles are of the image.
+    block: u32,
+    tracer: TracerOptions,
     samples: RawSliceMut<f32>,
     counters: Counters,
 }
 
-/// The type of the exported function `residual_render_tile`.
-type RenderTile = unsafe extern "C" fn(*mut TileCall);
+/// The type of the exported function `residual_render_tiles`.
+type RenderTiles = unsafe extern "C" fn(*mut TileCall);
 /// The type of the exported function `residual_identity`.
 type GetIdentity = extern "C" fn() -> Identity;
 
@@ -269,7 +274,7 @@ impl From<libloading::Error> for LoadError {
 
 /// A renderer loaded from a shared library.
 pub struct LoadedRenderer {
-    render_tile: RenderTile,
+    render_tiles: RenderTiles,
     layers: Layers,
     // Keeps the code in memory.
     _library: libloading::Library,
@@ -295,9 +300,9 @@ impl LoadedRenderer {
             if identity != Identity::new(lanes, layers) {
                 return Err(LoadError::Mismatch);
             }
-            let render_tile: RenderTile = *library.get(b"residual_render_tile\0")?;
+            let render_tiles: RenderTiles = *library.get(b"residual_render_tiles\0")?;
             Ok(Self {
-                render_tile,
+                render_tiles,
                 layers,
                 _library: library,
             })
@@ -310,17 +315,27 @@ impl TileRenderer for LoadedRenderer {
         self.layers
     }
 
-    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, samples: &mut [f32]) -> Counters {
+    fn render_tiles(
+        &self,
+        scene: &SceneView<'_>,
+        job: &TileJob<'_>,
+        samples: &mut [f32],
+    ) -> Counters {
         let mut call = TileCall {
             words: Buffer::ALL.map(|buffer| RawSlice::new(scene.buffers.get(buffer))),
             traversal: RawTraversal::new(&scene.traversal),
-            job: *job,
+            tiles: RawSlice::new(job.tiles),
+            block: match job.set {
+                SampleSet::First => 1,
+                SampleSet::Second { block } => block,
+            },
+            tracer: job.tracer,
             samples: RawSliceMut::new(samples),
             counters: Counters::default(),
         };
         // SAFETY: every slice in the call outlives it, `samples` is borrowed exclusively, and the function is the
-        // library's `residual_render_tile`, whose identity was checked when it was loaded.
-        unsafe { (self.render_tile)(&raw mut call) };
+        // library's `residual_render_tiles`, whose identity was checked when it was loaded.
+        unsafe { (self.render_tiles)(&raw mut call) };
         call.counters
     }
 }
@@ -338,7 +353,15 @@ pub unsafe fn answer(call: *mut TileCall, renderer: &impl TileRenderer) {
             buffers: Buffers::new(call.words.map(|words| words.get())),
             traversal: &call.traversal,
         };
-        call.counters = renderer.render_tile(&view, &call.job, call.samples.get());
+        let job = TileJob {
+            tiles: call.tiles.get(),
+            set: match call.block {
+                1 => SampleSet::First,
+                block => SampleSet::Second { block },
+            },
+            tracer: call.tracer,
+        };
+        call.counters = renderer.render_tiles(&view, &job, call.samples.get());
     }
 }
 
@@ -360,10 +383,10 @@ macro_rules! compiled_scene {
                 $scene::LAYERS
             }
 
-            fn render_tile(
+            fn render_tiles(
                 &self,
                 view: &$crate::SceneView<'_>,
-                job: &$crate::TileJob,
+                job: &$crate::TileJob<'_>,
                 samples: &mut [f32],
             ) -> $crate::generated::render::passes::Counters {
                 $crate::render_lanes!($lanes, view, job, samples, |buffers| $scene::new(buffers))
@@ -382,12 +405,12 @@ macro_rules! export_renderer {
             $crate::plugin::Identity::new(Compiled::LANES, $crate::TileRenderer::layers(&Compiled))
         }
 
-        /// Renders a tile.
+        /// Renders tiles.
         ///
         /// # Safety
         /// Called by `LoadedRenderer` only.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn residual_render_tile(call: *mut $crate::plugin::TileCall) {
+        pub unsafe extern "C" fn residual_render_tiles(call: *mut $crate::plugin::TileCall) {
             // SAFETY: the caller is `LoadedRenderer`, which made the call and waits for its end.
             unsafe { $crate::plugin::answer(call, &Compiled) }
         }

@@ -1,6 +1,6 @@
 //! From a lane count to the tile loop in its domain.
 
-/// Calls [`render_tile`](crate::tile::render_tile) in the domain of one lane count, named by its variant of
+/// Calls [`render_tiles`](crate::tile::render_tiles) in the domain of one lane count, named by its variant of
 /// [`LaneCount`](crate::LaneCount), on the machine's instruction set, with the scene that `|buffers| scene` makes.
 #[macro_export]
 macro_rules! render_lanes {
@@ -14,7 +14,7 @@ macro_rules! render_lanes {
         let $buffers = &view.buffers;
         dispatch!(Level::new(), simd => {
             let d = $crate::render_lanes!(# $domain, simd, $buffers);
-            $crate::tile::render_tile(d, &$scene, view, $job, $samples)
+            $crate::tile::render_tiles(d, &$scene, view, $job, $samples)
         })
     }};
     (# Scalar, $simd:ident, $buffers:ident) => {{

@@ -1,4 +1,4 @@
-//! One tile: from camera rays to radiance. The whole life of its paths is in [`render_tile`].
+//! Tiles: from camera rays to radiance. The whole life of its paths is in [`render_tiles`].
 
 use std::time::Instant;
 
@@ -31,14 +31,14 @@ impl Stopwatch {
 /// Paths under way at once. With their rays and hits they fit the second-level cache.
 const STREAM: usize = 4096;
 
-/// Renders a tile. Streams of paths are traced, sorted by program, shaded and thinned out; then camera rays fill the
+/// Renders tiles. Streams of paths are traced, sorted by program, shaded and thinned out; then camera rays fill the
 /// stream up again, so that lanes and packets stay full until the last samples of the job.
 #[inline(always)]
-pub fn render_tile<D, Sc>(
+pub fn render_tiles<D, Sc>(
     d: D,
     scene: &Sc,
     view: &SceneView<'_>,
-    job: &TileJob,
+    job: &TileJob<'_>,
     samples: &mut [f32],
 ) -> Counters
 where
@@ -62,8 +62,7 @@ where
     };
     let program_of = |triangle: u32| program_in(&view.buffers, triangle);
     let mut cameras = CameraRays::new(job);
-    let all = job.rect().area() * job.samples[1] as usize;
-    let capacity = STREAM.min(all + MAX_LANES);
+    let capacity = STREAM.min(job.samples() + MAX_LANES);
     let mut paths = PathStream::with_capacity(capacity);
     let mut next = PathStream::with_capacity(capacity);
     let mut shadows = ShadowStream::with_capacity(capacity);

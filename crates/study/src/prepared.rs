@@ -11,7 +11,7 @@ use residual_device_cpu::{
 };
 use residual_driver::compile;
 use residual_frontend::{hierarchy_quality, process_time};
-use residual_render::film::{Film, SampleSet, TILE_SIZE, TileRect};
+use residual_render::film::{Film, SampleSet, TILE_SIZE, TileRect, TileSamples};
 use residual_render::layer::Layers;
 use residual_render::passes::{Counters, Pass, RenderOptions};
 use residual_scenegen::desc::SceneDesc;
@@ -40,8 +40,13 @@ impl TileRenderer for Clamped {
         self.renderer.layers()
     }
 
-    fn render_tile(&self, scene: &SceneView<'_>, job: &TileJob, samples: &mut [f32]) -> Counters {
-        let counters = self.renderer.render_tile(scene, job, samples);
+    fn render_tiles(
+        &self,
+        scene: &SceneView<'_>,
+        job: &TileJob<'_>,
+        samples: &mut [f32],
+    ) -> Counters {
+        let counters = self.renderer.render_tiles(scene, job, samples);
         for sample in samples.chunks_exact_mut(self.layers().stride()) {
             let brightness = luminance([sample[0], sample[1], sample[2]]);
             if brightness > self.most {
@@ -162,9 +167,13 @@ impl Prepared {
         };
         let pass = Pass { first: 0, count };
         let set = SampleSet::First;
-        let job = TileJob::new(rect, set, pass, self.options.tracer(set));
+        let job = TileJob {
+            tiles: &[TileSamples { rect, pass }],
+            set,
+            tracer: self.options.tracer(set),
+        };
         let mut samples = vec![0.0; rect.area() * Layers::RADIANCE * count as usize];
-        self.renderer.render_tile(&view, &job, &mut samples);
+        self.renderer.render_tiles(&view, &job, &mut samples);
         samples.as_chunks().0.to_vec()
     }
 }

@@ -16,7 +16,7 @@ use super::pass::Pass;
 use super::tile::FilmTile;
 
 /// Pixels along the side of a tile that has a number of samples of its own.
-pub(super) const SIDE: u32 = 16;
+pub(super) const SIDE: u32 = 8;
 
 /// A tile's samples ÷ the image's, at a power of two.
 const SHARES: [f64; 9] = [0.25, 0.375, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0];

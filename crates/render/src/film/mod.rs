@@ -7,14 +7,16 @@
 mod adaptive;
 mod noise;
 mod pass;
+mod rect;
 mod replicates;
 mod sampling;
 mod tile;
 
-pub use pass::Pass;
+pub use pass::{Pass, TileSamples};
+pub use rect::TileRect;
 pub use replicates::SampleSet;
 pub use sampling::Sampling;
-pub use tile::{FilmTile, TileRect};
+pub use tile::FilmTile;
 
 use residual_accuracy::{ErrorEstimate, Replicate, Sampled, guaranteed_mse};
 
@@ -46,6 +48,16 @@ pub struct TilePass<'a> {
     pub pass: Pass,
     /// The tile.
     pub tile: &'a mut FilmTile,
+}
+
+impl TilePass<'_> {
+    /// What is to be rendered.
+    pub fn samples(&self) -> TileSamples {
+        TileSamples {
+            rect: self.tile.rect(),
+            pass: self.pass,
+        }
+    }
 }
 
 /// The second samples of some of a film's pixels.
@@ -108,7 +120,7 @@ impl Film {
     pub fn with_second_set(mut self, seed: u32) -> Self {
         let largest = match self.sampling {
             Sampling::Uniform => u32::MAX,
-            Sampling::Adaptive => adaptive::SIDE / 2,
+            Sampling::Adaptive => adaptive::SIDE,
         };
         self.second = SampleSet::second(self.width, self.height, largest).map(|set| {
             let SampleSet::Second { block } = set else {

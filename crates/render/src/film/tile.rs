@@ -3,27 +3,8 @@
 use residual_accuracy::{PixelMoments, SampleIndex};
 
 use super::noise::Noises;
+use super::rect::TileRect;
 use crate::layer::{Layer, Layers, Reduction};
-
-/// A rectangle of pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TileRect {
-    /// Leftmost column.
-    pub x: u32,
-    /// Topmost row.
-    pub y: u32,
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-}
-
-impl TileRect {
-    /// How many pixels it has.
-    pub fn area(&self) -> usize {
-        self.width as usize * self.height as usize
-    }
-}
 
 /// One tile of a [`Film`](super::Film).
 #[derive(Clone, Debug, PartialEq)]
