@@ -282,3 +282,46 @@ fn thin_sheets_do_not_bend_and_have_no_inside() {
         }
     }
 }
+
+/// A clear body takes nothing from a path but the factor that it gives back on the way out: what a path carries, scaled by
+/// the squared index of where it is, stays the same on the way in, inside and on the way out.
+#[test]
+fn what_glass_takes_on_the_way_in_is_known_to_roulette() {
+    let data = scene(&[FLOOR]);
+    let buffers = data.buffers();
+    let d = Scalar::new(&buffers);
+    let front = surface_at(d, 0, [0.3, 0.3], [0.0, 0.0, -1.0]);
+    let back = surface_at(d, 0, [0.3, 0.3], [0.0, 0.0, 1.0]);
+    let mut rng = Rng::new(93);
+    let mut worst = Worst::default();
+    for _ in 0..1000 {
+        let ior = rng.range(0.6, 2.5) as f32;
+        let glass = Dielectric {
+            transmittance: WHITE,
+            ior: Const(ior),
+            interface: Solid,
+        };
+        let mix = Mix {
+            a: Diffuse { albedo: WHITE },
+            b: glass,
+            weight: Const(1.0),
+        };
+        for (surface, outside_of) in [(&front, 1.0), (&back, ior * ior)] {
+            let wo = view(rng.range(0.8, 1.0), rng.range(0.0, 6.0));
+            for lobe in [0.0, 0.999_999] {
+                let sample = glass.sample(d, surface, wo, [0.5, 0.5, lobe]);
+                let scale = glass.radiance_scale(d, surface, sample.wi).unwrap();
+                assert_eq!(mix.radiance_scale(d, surface, sample.wi), Some(scale));
+                let carried = f64::from(sample.weight.x * scale / outside_of);
+                worst.add((carried - 1.0).abs(), || format!("η {ior}, {wo:?}"));
+            }
+        }
+        let thin = Dielectric {
+            transmittance: WHITE,
+            ior: Const(ior),
+            interface: Thin,
+        };
+        assert_eq!(thin.radiance_scale(d, &front, view(0.5, 0.0)), None);
+    }
+    worst.assert_below(1e-6, "what is carried through glass");
+}

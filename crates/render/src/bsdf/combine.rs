@@ -131,6 +131,12 @@ impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, W: ScalarSource<D>> Bsdf<D> for Mix<A, B
     }
 
     #[inline(always)]
+    fn radiance_scale(&self, d: D, surface: &Surface<D>, wi: Vec3<D::F>) -> Option<D::F> {
+        let of_a = self.a.radiance_scale(d, surface, wi);
+        of_a.or_else(|| self.b.radiance_scale(d, surface, wi))
+    }
+
+    #[inline(always)]
     fn kind(&self) -> BsdfKind {
         self.a.kind().union(self.b.kind())
     }
@@ -171,6 +177,12 @@ impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, P: ScalarSource<D>> Bsdf<D> for Sum<A, B
     fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
         let sum = self.a.albedo(d, surface, wo) + self.b.albedo(d, surface, wo);
         sum.map(|c| d.min(c, d.lit(1.0)))
+    }
+
+    #[inline(always)]
+    fn radiance_scale(&self, d: D, surface: &Surface<D>, wi: Vec3<D::F>) -> Option<D::F> {
+        let of_a = self.a.radiance_scale(d, surface, wi);
+        of_a.or_else(|| self.b.radiance_scale(d, surface, wi))
     }
 
     #[inline(always)]

@@ -146,6 +146,16 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
     }
 
     #[inline(always)]
+    fn radiance_scale(&self, d: D, surface: &Surface<D>, wi: Vec3<D::F>) -> Option<D::F> {
+        self.interface.refracts().then(|| {
+            let ior = self.ior.scalar(d, surface);
+            let (here, beyond) = (d.lt(d.lit(0.0), wi.z), d.lt(wi.z, d.lit(0.0)));
+            let inside = (surface.front & beyond) | (!surface.front & here);
+            d.select(inside, ior * ior, d.lit(1.0))
+        })
+    }
+
+    #[inline(always)]
     fn kind(&self) -> BsdfKind {
         BsdfKind {
             scatters: false,

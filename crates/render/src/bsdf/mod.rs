@@ -80,6 +80,14 @@ pub trait Bsdf<D: Domain> {
     /// is the Fresnel-weighted colour of a smooth surface. It may go with what is seen through a surface: a window's is
     /// its tint.
     fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F>;
+    /// The squared index of refraction of what `wi` leads into, relative to the outside; `None` if that is one on both sides.
+    /// Radiance is that much larger in there, for a reason of measure and not of light: a path takes the inverse along, and
+    /// gives it back on the way out.
+    #[inline(always)]
+    fn radiance_scale(&self, d: D, surface: &Surface<D>, wi: Vec3<D::F>) -> Option<D::F> {
+        let _ = (d, surface, wi);
+        None
+    }
     /// What lobes there are. Folds to a constant in concrete types, so that code for the rest disappears.
     /// (A method, not an associated constant: boxed nodes need a dyn-compatible trait.)
     fn kind(&self) -> BsdfKind;

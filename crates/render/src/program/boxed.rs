@@ -99,6 +99,7 @@ entered!(Bsdf {
     fn eval(d, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D>;
     fn sample(d, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D>;
     fn albedo(d, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F>;
+    fn radiance_scale(d, surface: &Surface<D>, wi: Vec3<D::F>) -> Option<D::F>;
     const fn kind() -> BsdfKind;
 });
 entered!(ColorSource {

@@ -147,7 +147,12 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
         let dir = surface.frame.to_world(sample.wi).normalize(d);
 
         let throughput = path.throughput * sample.weight;
-        let largest = throughput.max_component(d);
+        // What paths lose on their way into glass they gain on their way out: it is no reason to end there (PBRT 4, 14.5.4).
+        let outside = match bsdf.radiance_scale(d, surface, sample.wi) {
+            Some(scale) => throughput.scale(scale),
+            None => throughput,
+        };
+        let largest = outside.max_component(d);
         let early = d.lt_u(path.depth, self.settings.roulette_from);
         let one = d.lit(1.0);
         let survival = d.select(early, one, d.min(largest, d.lit(0.95)));
