@@ -3,11 +3,13 @@
 //! ([`output`], [`input`], and [`pictures`] of numbers).
 
 mod clock;
+pub mod display;
 pub mod input;
 pub mod options;
 pub mod output;
 pub mod pictures;
 pub mod precision;
+pub mod progress;
 mod rendered;
 pub mod session;
 pub mod stats;

@@ -8,6 +8,8 @@ use clap::{Args, ValueEnum};
 use residual_render::film::Sampling;
 use residual_render::passes::RenderOptions;
 
+use crate::display::{Display, Exposure, ToneMap};
+
 const DEFAULT_SAMPLES: u32 = 64;
 
 /// How long to render, and where to.
@@ -16,6 +18,12 @@ pub struct RenderArgs {
     /// Image file (.png, .exr); may be given more than once
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
+    /// Brightness of a PNG in stops (-1.5), or auto, which makes the mean middle grey
+    #[arg(long, value_name = "STOPS|auto", default_value_t = Exposure::default(), allow_hyphen_values = true)]
+    pub exposure: Exposure,
+    /// How a PNG shows what is brighter than white
+    #[arg(long, value_enum, default_value_t = ToneMap::default())]
+    pub tonemap: ToneMap,
     /// Samples per pixel [default: 64, or as many as --time and --error allow]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
@@ -53,6 +61,14 @@ pub struct RenderArgs {
 }
 
 impl RenderArgs {
+    /// How pictures of 8 bits are made.
+    pub fn display(&self) -> Display {
+        Display {
+            exposure: self.exposure,
+            tone_map: self.tonemap,
+        }
+    }
+
     /// What the device is told; `reach` is used where none is asked for.
     pub fn render_options(&self, size: [u32; 2], reach: f32) -> RenderOptions {
         let is_endless = self.time.is_none() && self.error.is_none();

@@ -8,7 +8,8 @@ use exr::prelude::*;
 use residual_accuracy::{ErrorEstimate, Interval};
 use residual_render::film::Film;
 use residual_render::layer::Layers;
-use residual_render::texture::srgb_code;
+
+use crate::display::Display;
 
 /// What is written beside the pixels.
 pub struct Metadata {
@@ -105,13 +106,13 @@ fn directory(path: &Path) -> &Path {
         .unwrap_or(Path::new("."))
 }
 
-/// Writes the film as a PNG (sRGB) or an EXR (linear).
+/// Writes the film as a PNG, as a display shows it, or as an EXR, linear.
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn write(path: &Path, film: &Film, metadata: &Metadata) -> Result<()> {
+pub fn write(path: &Path, film: &Film, display: Display, metadata: &Metadata) -> Result<()> {
     let bytes = match Format::of(path)? {
-        Format::Png => png(film)?,
+        Format::Png => png(film, display)?,
         Format::Exr => open_exr(film, metadata)?,
     };
     write_atomically(path, &bytes)
@@ -153,12 +154,8 @@ fn write_with_mode(path: &Path, bytes: &[u8], mode: u32) -> Result<()> {
     write().with_context(|| format!("writing {}", path.display()))
 }
 
-fn png(film: &Film) -> Result<Vec<u8>> {
-    let codes = film
-        .image()
-        .into_iter()
-        .flat_map(|rgb| rgb.map(srgb_code))
-        .collect();
+fn png(film: &Film, display: Display) -> Result<Vec<u8>> {
+    let codes = display.codes(&film.image()).into_flattened();
     encode_png([film.width() as usize, film.height() as usize], codes)
 }
 
@@ -238,14 +235,14 @@ mod tests {
             error: None,
         };
         let png = directory.path().join("a.png");
-        write(&png, &film(), &metadata).unwrap();
+        write(&png, &film(), Display::default(), &metadata).unwrap();
         let read = image::open(&png).unwrap().to_rgb8();
         assert_eq!(
             (read.dimensions(), read.get_pixel(2, 1).0),
             ((3, 2), [241, 248, 255])
         );
         let exr = directory.path().join("a.exr");
-        write(&exr, &film(), &metadata).unwrap();
+        write(&exr, &film(), Display::default(), &metadata).unwrap();
         let read = image_from_exr(&exr);
         assert_eq!(read, film().image());
     }
@@ -275,7 +272,7 @@ mod tests {
         };
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.exr");
-        write(&path, &film, &metadata).unwrap();
+        write(&path, &film, Display::default(), &metadata).unwrap();
         let image = read_first_flat_layer_from_file(&path).unwrap();
         let channels: Vec<_> = image
             .layer_data

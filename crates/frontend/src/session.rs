@@ -8,7 +8,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use indicatif::{ProgressBar, ProgressStyle};
 use residual_accuracy::{Convergence, Measured};
 use residual_render::film::{Film, TILE_SIZE};
 use residual_render::layer::Layers;
@@ -18,6 +17,7 @@ use crate::options::{RenderArgs, StatsFormat};
 use crate::output::{self, Metadata};
 use crate::precision;
 use crate::process_time;
+use crate::progress::Reporter;
 use crate::rendered::Rendered;
 use crate::stats::Statistics;
 
@@ -70,28 +70,12 @@ impl<'a> Session<'a> {
         pass: impl FnMut(&mut Film, Pass) -> Result<Counters, E>,
         mut after_pass: impl FnMut(&Progress<'_>),
     ) -> Result<Rendered> {
-        let bar = progress_bar(self.args, options);
+        let mut reporter = Reporter::new(self.args.quiet);
         let mut first_image = None;
         let mut next_image = Duration::ZERO;
         let mut failed = None;
         let show = |progress: Progress<'_>| {
-            match (options.samples, options.time) {
-                (None, Some(_)) => bar.set_position(progress.elapsed.as_millis() as u64),
-                _ => bar.set_position(u64::from(progress.samples)),
-            }
-            if let (None, None, Some(error)) = (options.samples, options.time, options.error)
-                && let Some(end) = progress.convergence.forecast(error * error)
-            {
-                bar.set_length((end.samples as u64).max(u64::from(progress.samples)));
-            }
-            bar.set_message(match progress.convergence.last() {
-                Some(last) => format!(
-                    "{} spp, error {}",
-                    progress.samples,
-                    precision::percent(last.error.relmse.value)
-                ),
-                None => format!("{} spp", progress.samples),
-            });
+            reporter.show(options, &progress);
             after_pass(&progress);
             let is_last = options.samples == Some(progress.samples);
             if !is_last && progress.elapsed >= next_image {
@@ -116,7 +100,7 @@ impl<'a> Session<'a> {
         let mut film = film.with_second_set(options.seed);
         let (report, outcome) = render_passes(options, &mut film, pass, show);
         let cpu = process_time() - before;
-        bar.finish_and_clear();
+        reporter.finish();
         if let Some(error) = failed {
             return Err(error);
         }
@@ -159,7 +143,7 @@ impl<'a> Session<'a> {
         };
         self.outputs
             .iter()
-            .try_for_each(|path| output::write(path, film, &metadata))
+            .try_for_each(|path| output::write(path, film, self.args.display(), &metadata))
     }
 
     /// Says how it went; statistics where they were asked for.
@@ -221,25 +205,4 @@ fn stop_on_interrupt() -> Result<Arc<AtomicBool>> {
     })
     .context("listening for Ctrl-C")?;
     Ok(stop)
-}
-
-fn progress_bar(args: &RenderArgs, options: &RenderOptions) -> ProgressBar {
-    if args.quiet {
-        return ProgressBar::hidden();
-    }
-    // By samples where their number is known, else by milliseconds of the time limit. How many samples it takes to an error is
-    // forecast on the way.
-    let length = match (options.samples, options.time) {
-        (Some(samples), _) => u64::from(samples),
-        (None, Some(time)) => time.as_millis() as u64,
-        (None, None) => 0,
-    };
-    bar_of(length)
-}
-
-/// A progress bar as all commands show it.
-pub fn bar_of(length: u64) -> ProgressBar {
-    let style =
-        ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {elapsed} gone, {eta} left");
-    ProgressBar::new(length).with_style(style.expect("the template is valid"))
 }

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
 use indicatif::ProgressBar;
 use residual_frontend::options::Size;
-use residual_frontend::session::bar_of;
+use residual_frontend::progress::bar_of;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::CameraChoice;
 
