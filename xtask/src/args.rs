@@ -10,8 +10,8 @@ use residual_frontend::options::Size;
 use residual_render::layer::{Layer, Layers};
 
 use crate::choices::{
-    CullingArg, DeviceArg, LightsArg, MappingArg, MisArg, SamplerArg, SpecializeArg, TargetArg,
-    TierArg, TracerArg, ViewArg,
+    CullingArg, DeviceArg, LightsArg, MappingArg, MisArg, SamplerArg, SpecializeArg, StudioArg,
+    TargetArg, TierArg, TracerArg, ViewArg,
 };
 use crate::compare::args::CompareArgs;
 
@@ -71,6 +71,9 @@ pub(crate) struct SceneArgs {
     /// Turn of the environment about +Y
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "env", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) env_rotate: f32,
+    /// When a studio lights the scene: soft boxes before grey walls
+    #[arg(long, value_enum, default_value_t = StudioArg::Auto)]
+    pub(crate) studio: StudioArg,
     /// Add a checkered ground below the scene
     #[arg(long)]
     pub(crate) ground: bool,

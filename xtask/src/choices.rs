@@ -12,6 +12,16 @@ pub(crate) enum CullingArg {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StudioArg {
+    /// Where the scene has no lamp
+    Auto,
+    /// Whatever lights it has
+    Always,
+    /// Not at all
+    Never,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SamplerArg {
     /// Owen-scrambled Sobol points
     Sobol,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
-use residual_scenegen::desc::{SceneDesc, WarningKind};
+use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{
@@ -13,7 +13,7 @@ use residual_scenegen::plan::{
 };
 
 use crate::args::SceneArgs;
-use crate::choices::{CullingArg, LightsArg, SamplerArg, SpecializeArg};
+use crate::choices::{CullingArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TracerArg};
 
 /// What statistics say about a planned scene.
 pub(crate) fn summary(plan: &Plan) -> SceneSummary {
@@ -41,6 +41,20 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             strict: args.strict,
         },
     )?;
+    let needs_light = matches!(args.tracer, TracerArg::Path) && !scene.instances.is_empty();
+    match args.studio {
+        StudioArg::Auto if needs_light && scene.is_unlit() => {
+            scene.add_studio();
+            scene.warnings.push(Warning {
+                kind: WarningKind::NoLight,
+                place: "lights".to_owned(),
+                message: "the scene has no light; it stands in a studio (--env FILE for a sky, --studio never for a white one)"
+                    .to_owned(),
+            });
+        }
+        StudioArg::Always => scene.add_studio(),
+        StudioArg::Auto | StudioArg::Never => {}
+    }
     if args.ground {
         scene.add_ground();
     }
