@@ -325,7 +325,7 @@ pub enum PunctualKind {
         direction: Vec3,
         /// Half-angle of full intensity, radians.
         inner: f32,
-        /// Half-angle where it ends, radians; inner < outer ≤ π/2.
+        /// Half-angle where it ends, radians; inner ≤ outer ≤ π/2, outer > 0. Where both are the same, the edge is hard.
         outer: f32,
     },
     /// Shines along one direction from infinitely far away.

@@ -278,8 +278,15 @@ fn check_light(i: usize, light: &LightDesc) -> Check {
                 place,
                 "has no unit direction",
             )?;
-            let is_cone = inner >= 0.0 && inner < outer && outer <= std::f32::consts::FRAC_PI_2;
-            require(is_cone, place, "has a cone without 0 ≤ inner < outer ≤ π/2")
+            let is_cone = inner >= 0.0
+                && inner <= outer
+                && outer > 0.0
+                && outer <= std::f32::consts::FRAC_PI_2;
+            require(
+                is_cone,
+                place,
+                "has a cone without 0 ≤ inner ≤ outer ≤ π/2, outer > 0",
+            )
         }
         PunctualKind::Directional { direction } => require(
             is_unit(direction.length_squared()),

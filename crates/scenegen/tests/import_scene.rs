@@ -44,7 +44,7 @@ fn lights_stand_in_the_world() {
     };
     assert_eq!(position, Vec3::new(1., 2., 3.));
     assert!((direction + Vec3::X).length() < 1e-6);
-    assert!(inner < outer && outer == 0.1);
+    assert_eq!([inner, outer], [0.1, 0.1], "a hard edge");
     assert!(warns(&scene, "lights/1", "innerConeAngle"));
     assert_eq!(
         scene.lights[2].kind,

@@ -167,15 +167,14 @@ impl PlannedLights {
                 inner,
                 outer,
             } => {
-                // KHR_lights_punctual: scale = 1/(cos inner − cos outer), offset = −cos outer·scale.
-                let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
-                let record = PunctualRecord {
-                    scale,
-                    axis: direction.to_array().into(),
-                    offset: -outer.cos() * scale,
-                    ..record(position)
-                };
-                let cone = 0.5 * sphere * (1.0 - f64::from(outer.cos()));
+                let record = PunctualRecord::spot(
+                    0,
+                    position.to_array(),
+                    light.intensity,
+                    direction.to_array(),
+                    [inner, outer],
+                );
+                let cone = 0.5 * sphere * light::versine(outer);
                 (LightNode::Spot, cone * strength, record)
             }
             PunctualKind::Directional { direction } => {

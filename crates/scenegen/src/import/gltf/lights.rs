@@ -93,7 +93,7 @@ pub(super) fn read(
     }))
 }
 
-/// The cone's half-angles, with 0 ≤ inner < outer ≤ π/2.
+/// The cone's half-angles, with 0 ≤ inner ≤ outer ≤ π/2 and outer > 0.
 fn cone(light: &Light, at: &str, warnings: &mut Warnings) -> (f32, f32) {
     let (inner, outer) = light.spot.as_ref().map_or((0.0, FRAC_PI_4), |spot| {
         (spot.inner_cone_angle, spot.outer_cone_angle)
@@ -111,17 +111,18 @@ fn cone(light: &Light, at: &str, warnings: &mut Warnings) -> (f32, f32) {
             format!("outerConeAngle {outer} is not in (0, π/2]; π/4 is used"),
         );
     }
-    if inner >= 0.0 && inner < valid_outer {
+    // The specification wants the two to differ; exporters write the same for a hard edge.
+    if inner >= 0.0 && inner <= valid_outer {
         return (inner, valid_outer);
     }
     let valid_inner = if inner >= valid_outer {
-        valid_outer * 0.999
+        valid_outer
     } else {
         0.0
     };
     warnings.push(
         at,
-        format!("innerConeAngle {inner} is not in [0, outerConeAngle); {valid_inner} is used"),
+        format!("innerConeAngle {inner} is not in [0, outerConeAngle]; {valid_inner} is used"),
     );
     (valid_inner, valid_outer)
 }
