@@ -346,6 +346,20 @@ pub struct CameraDesc {
     pub rotation: Quat,
     /// Lens.
     pub projection: Projection,
+    /// Width over height of what the file frames, all of which images of any shape show; `None` where only the height
+    /// counts.
+    pub frame_aspect: Option<f32>,
+    /// Where the file's camera begins and ends to see, which is not rendered; `None` where the file says nothing of it.
+    pub clip: Option<ClipDistances>,
+}
+
+/// Along the view axis from the eye, in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClipDistances {
+    /// What is nearer is not seen.
+    pub near: f32,
+    /// What is farther is not seen; `None` where everything is.
+    pub far: Option<f32>,
 }
 
 /// A camera's projection.

@@ -308,6 +308,12 @@ fn check_camera(i: usize, camera: &CameraDesc) -> Check {
         place,
         "has no unit rotation",
     )?;
+    let is_frame = |aspect: f32| aspect > 0.0 && aspect.is_finite();
+    require(
+        camera.frame_aspect.is_none_or(is_frame),
+        place,
+        "has a frame of no positive width over height",
+    )?;
     match camera.projection {
         Projection::Perspective { yfov } => require(
             yfov > 0.0 && yfov < std::f32::consts::PI,

@@ -60,7 +60,7 @@ fn cameras_forget_scale_and_impossible_lenses() {
     gltf.json["cameras"] = json!([
         { "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 } },
         { "type": "orthographic", "orthographic": { "xmag": 1, "ymag": 2, "znear": 0, "zfar": 1 } },
-        { "type": "perspective", "perspective": { "yfov": 4, "znear": 0.1 } },
+        { "type": "perspective", "perspective": { "yfov": 4, "znear": 0.1, "aspectRatio": -1 } },
     ]);
     gltf.json["nodes"] = json!([
         { "camera": 0, "name": "eye", "translation": [0, 0, 5], "scale": [3, 1, 2] },
@@ -90,6 +90,9 @@ fn cameras_forget_scale_and_impossible_lenses() {
         Projection::Perspective { yfov: FRAC_PI_4 }
     );
     assert!(warns(&scene, "cameras/2", "yfov"));
+    assert!(warns(&scene, "cameras/2", "aspectRatio -1"));
+    let frames: Vec<_> = scene.cameras.iter().map(|eye| eye.frame_aspect).collect();
+    assert_eq!(frames, [None, Some(0.5), None]);
     assert!(warns(&scene, "nodes/3", "orientation"));
 }
 

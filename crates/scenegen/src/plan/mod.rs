@@ -8,6 +8,7 @@ mod alpha_test;
 mod bsdfs;
 mod camera;
 mod camera_choice;
+mod clip_distances;
 mod closed;
 mod error;
 mod explain;
@@ -29,6 +30,7 @@ use residual_render::scene_data::SceneData;
 use residual_render::tracer::TracerNode;
 
 pub use camera_choice::{CameraChoice, View};
+use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
 pub use options::{Binding, CullingRule, LightPicks, PlanOptions};
@@ -71,8 +73,14 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         });
         return Ok(plan);
     }
-    let (camera, camera_name) =
+    let (camera, camera_name, clip) =
         camera::choose(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
+    let mut dismissed = [&scene.dismissed[..], &materials.dismissed].concat();
+    match clip.map(|clip| clip_distances::look(clip, &camera, &camera_name, &data)) {
+        Some(Clipping::Something(warning)) => warnings.push(warning),
+        Some(Clipping::Nothing(reason)) => dismissed.push(reason),
+        None => {}
+    }
     images.pack(scene, &mut data)?;
     *data.buffer_mut(Buffer::Params) = materials.params;
 
@@ -95,7 +103,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         camera_name,
         diagonal: 2.0 * geometry.bounds.sphere().1,
         warnings,
-        dismissed: [&scene.dismissed[..], &materials.dismissed].concat(),
+        dismissed,
     };
     if options.layers.has(Layer::MaterialIndex) {
         plan.pack_objects();
