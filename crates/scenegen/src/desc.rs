@@ -91,7 +91,9 @@ pub struct ImageDesc {
 pub enum Texels {
     /// Four bytes a texel, as stored in the file. Whether colour is sRGB-encoded is said by its use.
     Rgba8(Vec<[u8; 4]>),
-    /// Linear, finite, non-negative (16-bit PNGs, HDR and EXR images).
+    /// Four numbers of 16 bits a texel, likewise (16-bit PNGs).
+    Rgba16(Vec<[u16; 4]>),
+    /// Linear, finite, non-negative (HDR and EXR images).
     RgbaF32(Vec<[f32; 4]>),
 }
 
@@ -147,7 +149,7 @@ pub struct TextureUse {
 pub struct ColorInput {
     /// Linear factor.
     pub factor: [f32; 3],
-    /// Colour texture; [`Texels::Rgba8`] is decoded from sRGB.
+    /// Colour texture; [`Texels::Rgba8`] and [`Texels::Rgba16`] are decoded from sRGB.
     pub texture: Option<TextureUse>,
 }
 

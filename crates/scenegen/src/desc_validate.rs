@@ -36,6 +36,7 @@ impl SceneDesc {
             let expected = u64::from(image.width) * u64::from(image.height);
             let (count, is_valid) = match &image.texels {
                 Texels::Rgba8(texels) => (texels.len(), true),
+                Texels::Rgba16(texels) => (texels.len(), true),
                 Texels::RgbaF32(texels) => (
                     texels.len(),
                     texels

@@ -12,6 +12,7 @@ mod fingerprint;
 mod ground;
 pub mod import;
 pub mod plan;
+mod sixteen_bits;
 
 pub use desc_validate::Violation;
 pub use fingerprint::{StructureMismatch, fingerprint};

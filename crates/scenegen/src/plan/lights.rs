@@ -8,7 +8,7 @@ use residual_render::light::{
 };
 use residual_render::program::{LightNode, Source, SourceNode};
 use residual_render::scene_data::SceneData;
-use residual_render::texture::srgb_table;
+use residual_render::texture::{AnyFormat, srgb_table};
 
 use super::geometry::Geometry;
 use super::images::Images;
@@ -18,6 +18,7 @@ use super::planned_materials::Materials;
 use crate::desc::{
     ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, Texels,
 };
+use crate::sixteen_bits;
 
 /// The kinds of lights of a scene and how many there are of each.
 #[derive(Debug, Default)]
@@ -70,6 +71,11 @@ fn mean_emission(scene: &SceneDesc, input: &ColorInput) -> f64 {
                 |t: &[u8; 4]| luminance([r * decode(t[0]), g * decode(t[1]), b * decode(t[2])]);
             texels.iter().map(texel).sum()
         }
+        Texels::Rgba16(texels) => texels
+            .iter()
+            .map(|&t| sixteen_bits::decoded_texel(t))
+            .map(|t| luminance([r * t[0], g * t[1], b * t[2]]))
+            .sum(),
         Texels::RgbaF32(texels) => texels
             .iter()
             .map(|t| luminance([r * t[0], g * t[1], b * t[2]]))
@@ -220,7 +226,7 @@ impl PlannedLights {
             std::f64::consts::PI * radius * radius * irradiance,
         );
 
-        let texels = images.param(scene, environment.image);
+        let texels = images.param(scene, environment.image, AnyFormat::LinearFloat);
         let (sin, cos) = environment.rotation.sin_cos();
         let header = EnvironmentHeader {
             width: texels.width,
