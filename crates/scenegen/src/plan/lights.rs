@@ -6,7 +6,7 @@ use residual_render::alias_table::alias_entries;
 use residual_render::light::{
     self, AreaRecord, EnvironmentHeader, LightRecord, PunctualRecord, push_light, set_picks,
 };
-use residual_render::program::{LightNode, Source, SourceNode};
+use residual_render::program::{ColorNode, LightNode, Program, Source, SourceNode};
 use residual_render::scene_data::SceneData;
 use residual_render::texture::{AnyFormat, srgb_table};
 
@@ -49,6 +49,25 @@ pub(super) fn plan_lights(
     }
     lights.set_picks(picks, data);
     lights
+}
+
+/// The triangles of a program, which emit what a source gives. Shadow rays end before the light, so that nobody asks for
+/// its alpha, as paths that find it are asked: it shines as much less as it lets rays through.
+fn area(program: &Program, source: &ColorNode) -> LightNode {
+    let attributes = source.attributes().intersection(program.attributes);
+    match &program.alpha_test {
+        None => LightNode::Area {
+            emission: source.clone(),
+            attributes,
+        },
+        Some(test) => LightNode::Area {
+            emission: ColorNode::Product(
+                Box::new(source.clone()),
+                Box::new(ColorNode::Gray(Box::new(test.coverage()))),
+            ),
+            attributes: attributes.union(test.given_attributes()),
+        },
+    }
 }
 
 /// Luminance of a colour.
@@ -122,10 +141,7 @@ impl PlannedLights {
             let SourceNode::Color(source) = &program.inputs[emission.radiance.0].source else {
                 unreachable!("emission is a colour")
             };
-            let node = LightNode::Area {
-                emission: source.clone(),
-                attributes: source.attributes().intersection(program.attributes),
-            };
+            let node = area(program, source);
             let radiance = mean_emission(scene, &scene.materials[material].emission);
             let sides = if emission.double_sided { 2.0 } else { 1.0 };
             let source = format!("material {:?}", scene.materials[material].name);
