@@ -7,7 +7,7 @@
 //!
 //! Space: right-handed, +Y up, metres, as glTF. Colours are linear Rec. 709 unless an image says sRGB.
 
-use glam::{Affine3A, Quat, Vec2, Vec3, Vec4};
+use glam::{Affine3A, DVec3, Quat, Vec2, Vec3, Vec4};
 
 use crate::effect::Effect;
 
@@ -16,6 +16,9 @@ use crate::effect::Effect;
 pub struct SceneDesc {
     /// File stem, used for the default name of the image.
     pub name: String,
+    /// Where in the file's world the scene's own lies: 0 but for scenes that are far away, of which 32 bits would not hold
+    /// the details. All positions here are relative to it.
+    pub origin: DVec3,
     /// Decoded images, each once.
     pub images: Vec<ImageDesc>,
     /// Images together with their samplers.

@@ -32,6 +32,11 @@ fn require(holds: bool, place: impl FnOnce() -> String, problem: &str) -> Check 
 impl SceneDesc {
     /// Checks every invariant that the module documentation of [`crate::desc`] names.
     pub fn validate(&self) -> Result<(), Violation> {
+        require(
+            self.origin.is_finite(),
+            || "origin".to_owned(),
+            "is not finite",
+        )?;
         for (i, image) in self.images.iter().enumerate() {
             let expected = u64::from(image.width) * u64::from(image.height);
             let (count, is_valid) = match &image.texels {

@@ -105,11 +105,9 @@ fn chains_of_a_thousand_nodes_compose_exactly_and_cycles_are_refused() {
     nodes.push(json!({ "mesh": 0 }));
     gltf.json["nodes"] = json!(nodes);
     let scene = gltf.import().unwrap();
-    let expected = (0.1_f32 as f64 * 4999.0) as f32;
-    assert_eq!(
-        scene.instances[0].transform.translation,
-        Vec3A::new(expected, 0., 0.)
-    );
+    let expected = f64::from(0.1_f32) * 4999.0;
+    let found = scene.origin + Vec3::from(scene.instances[0].transform.translation).as_dvec3();
+    assert!(found.distance(glam::DVec3::new(expected, 0.0, 0.0)) < 1e-6);
 
     gltf.json["nodes"] = json!([{ "children": [1] }, { "children": [0], "name": "loop" }]);
     gltf.refused(&["nodes/0", "reached twice"]);
@@ -190,4 +188,65 @@ fn floods_of_warnings_are_cut() {
     let scene = gltf.import().unwrap();
     assert_eq!(scene.warnings.len(), 1001);
     assert!(warns(&scene, "warnings", "more warnings"));
+}
+
+/// What is near one another in a survey stays so, however the file writes where it is.
+#[test]
+fn scenes_far_away_are_relative_to_a_place_among_them() {
+    let place = [431_200.503, 120.25, -4_649_776.127_f64];
+    let beside = |x: f64, y: f64, z: f64| [place[0] + x, place[1] + y, place[2] + z];
+    let light = json!({ "KHR_lights_punctual": { "light": 0 } });
+    let matrix = |t: [f64; 3]| json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, t[0], t[1], t[2], 1]);
+    let layouts = [
+        // All below one node.
+        json!([
+            { "children": [1, 2, 3, 4], "translation": place },
+            { "mesh": 0 },
+            { "mesh": 0, "translation": [0.01, 0, 0] },
+            { "camera": 0, "translation": [0, 0, 0.75] },
+            { "extensions": light, "translation": [0, 2.5, 0] },
+        ]),
+        // Each by itself.
+        json!([
+            { "children": [1, 2, 3, 4] },
+            { "mesh": 0, "translation": place },
+            { "mesh": 0, "matrix": matrix(beside(0.01, 0.0, 0.0)) },
+            { "camera": 0, "translation": beside(0.0, 0.0, 0.75) },
+            { "extensions": light, "matrix": matrix(beside(0.0, 2.5, 0.0)) },
+        ]),
+    ];
+    let mut gltf = Gltf::square();
+    gltf.indices(U8, &[0, 1, 2], 3);
+    gltf.json["cameras"] = json!([{ "type": "perspective",
+        "perspective": { "yfov": 0.5, "znear": 0.1 } }]);
+    gltf.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "type": "point" }] } });
+    for nodes in layouts {
+        gltf.json["nodes"] = nodes;
+        let scene = gltf.import().unwrap();
+        let near = |found: Vec3, offset: [f64; 3]| {
+            let found = scene.origin + found.as_dvec3();
+            let expected = glam::DVec3::from(beside(offset[0], offset[1], offset[2]));
+            // The parent's translation is read in 64 bits as well.
+            assert!(found.distance(expected) < 1e-6, "{found} {expected}");
+        };
+        assert!(scene.origin.distance(glam::DVec3::from(place)) < 2.0);
+        near(scene.instances[0].transform.translation.into(), [0.0; 3]);
+        near(
+            scene.instances[1].transform.translation.into(),
+            [0.01, 0.0, 0.0],
+        );
+        near(scene.cameras[0].position, [0.0, 0.0, 0.75]);
+        let PunctualKind::Point { position } = scene.lights[0].kind else {
+            panic!("point")
+        };
+        near(position, [0.0, 2.5, 0.0]);
+    }
+    // Near scenes stay where they are, to the bit.
+    gltf.json["nodes"] = json!([{ "mesh": 0, "translation": [20, 0.1, 0] }]);
+    let scene = gltf.import().unwrap();
+    assert_eq!(scene.origin, glam::DVec3::ZERO);
+    assert_eq!(
+        scene.instances[0].transform.translation,
+        Vec3A::new(20.0, 0.1, 0.0)
+    );
 }

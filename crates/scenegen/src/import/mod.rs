@@ -31,6 +31,7 @@ mod mesh;
 mod missing_uvs;
 mod obj;
 mod options;
+mod origin;
 mod warnings;
 
 pub use error::ImportError;

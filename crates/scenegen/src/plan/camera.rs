@@ -126,7 +126,9 @@ pub(super) fn choose(
             let dir = view.dir.map_or(default.rotation * Vec3::NEG_Z, Vec3::from);
             CameraDesc {
                 name: "given".to_owned(),
-                position: view.eye.map_or(default.position, Vec3::from),
+                position: view.eye.map_or(default.position, |eye| {
+                    (Vec3::from(eye).as_dvec3() - scene.origin).as_vec3()
+                }),
                 rotation: if view.dir.is_some() || view.up.is_some() {
                     look(dir, up)
                 } else {

@@ -23,6 +23,7 @@ mod planned_materials;
 mod program;
 mod sources;
 
+use glam::DVec3;
 use residual_render::domain::Buffer;
 use residual_render::layer::Layer;
 use residual_render::program::Structure;
@@ -105,6 +106,16 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         warnings,
         dismissed,
     };
+    if options.layers.has(Layer::Position) && scene.origin != DVec3::ZERO {
+        plan.warnings.push(Warning {
+            kind: WarningKind::Unfaithful,
+            place: "layer \"position\"".to_owned(),
+            message: format!(
+                "the scene is far from the origin: positions are relative to {}",
+                scene.origin
+            ),
+        });
+    }
     if options.layers.has(Layer::MaterialIndex) {
         plan.pack_objects();
     }

@@ -2,7 +2,7 @@
 
 use std::f32::consts::{FRAC_PI_4, PI};
 
-use glam::{DAffine3, DMat3, DQuat};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::json::camera::Type;
 use gltf::json::validation::Checked;
 use gltf::json::{Camera, Index};
@@ -27,17 +27,18 @@ struct Lens {
     clip: ClipDistances,
 }
 
-/// The camera of a node; `None`, after a warning, where it sees nothing.
+/// The camera of a node, relative to an origin; `None`, after a warning, where it sees nothing.
 pub(super) fn read(
     document: &Document,
     index: Index<Camera>,
     placed: &PlacedNode<'_>,
+    origin: DVec3,
     warnings: &mut Warnings,
 ) -> Result<Option<CameraDesc>, Fault> {
     let camera = get(&document.root.cameras, index, "cameras", &placed.place)?;
     let at = place("cameras", index.value(), camera.name.as_deref());
     let lens = lens(camera, &at, warnings)?;
-    let position = placed.world.translation.as_vec3();
+    let position = (placed.world.translation - origin).as_vec3();
     let Some(rotation) = rotation_of(&placed.world).filter(|_| position.is_finite()) else {
         warnings.push(
             &*placed.place,

@@ -1,11 +1,13 @@
 //! A glTF file's JSON and buffers, before anything is interpreted.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use gltf::json::{self, Index, Root};
 
 use super::lookup::{get, place};
-use super::{extensions, glb, root, uri};
+use super::{extensions, glb, root, translations, uri};
 use crate::import::error::{Fault, ImportError};
 use crate::import::files;
 use crate::import::warnings::Warnings;
@@ -16,6 +18,8 @@ pub(super) struct Document {
     pub(super) folder: PathBuf,
     /// The JSON.
     pub(super) root: Root,
+    /// Translations of nodes that 32 bits do not hold, by the node's index.
+    pub(super) long_translations: HashMap<usize, DVec3>,
     /// Each buffer's bytes, or why they could not be had (which matters only if someone asks).
     buffers: Vec<Result<Vec<u8>, String>>,
 }
@@ -43,6 +47,7 @@ impl Document {
         extensions::warn_about_root(&root, warnings);
         Ok(Self {
             folder: folder.to_owned(),
+            long_translations: translations::long(root::without_mark(json), &root),
             root,
             buffers,
         })

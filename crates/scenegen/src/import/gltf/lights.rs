@@ -14,11 +14,12 @@ use crate::desc::{LightDesc, PunctualKind};
 use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
 
-/// The light of a node; `None`, after a warning, where it cannot shine.
+/// The light of a node, relative to an origin; `None`, after a warning, where it cannot shine.
 pub(super) fn read(
     document: &Document,
     index: Index<Light>,
     placed: &PlacedNode<'_>,
+    origin: DVec3,
     warnings: &mut Warnings,
 ) -> Result<Option<LightDesc>, Fault> {
     let extension = document
@@ -39,7 +40,7 @@ pub(super) fn read(
         light.name.as_deref(),
     );
 
-    let position = placed.world.translation.as_vec3();
+    let position = (placed.world.translation - origin).as_vec3();
     let direction = placed
         .world
         .transform_vector3(DVec3::NEG_Z)

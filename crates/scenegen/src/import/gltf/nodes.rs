@@ -46,7 +46,11 @@ pub(super) fn flatten<'a>(
                 "is reached twice: nodes must form a tree, without shared children",
             ));
         }
-        let world = parent * local(node, &place, warnings);
+        let mut local = local(node, &place, warnings);
+        if let Some(&translation) = document.long_translations.get(&index) {
+            local.translation = translation;
+        }
+        let world = parent * local;
         for &child in node.children.iter().flatten().rev() {
             get(&root.nodes, child, "nodes", &place)?;
             stack.push((child, world));

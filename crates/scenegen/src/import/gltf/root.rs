@@ -17,13 +17,17 @@ pub(super) fn parse(json: &[u8]) -> Result<Root, Fault> {
     Ok(root)
 }
 
+/// The specification forbids a byte order mark and allows readers to skip it.
+pub(super) fn without_mark(json: &[u8]) -> &[u8] {
+    json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json)
+}
+
 fn parse_any_version(json: &[u8]) -> Result<Root, Fault> {
     if json.iter().filter(|&&byte| byte == b'{').count() > MAX_JSON_OBJECTS {
         let problem = format!("more than {MAX_JSON_OBJECTS} JSON objects");
         return Err(Fault::new("JSON", problem).advise(MAKE_SMALLER));
     }
-    // The specification forbids a byte order mark and allows readers to skip it.
-    let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    let json = without_mark(json);
     Root::from_slice(json).or_else(|error| {
         parse_leniently(json).ok_or_else(|| {
             let place = format!("line {} column {}", error.line(), error.column());
