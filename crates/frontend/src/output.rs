@@ -153,6 +153,28 @@ fn write_with_mode(path: &Path, bytes: &[u8], mode: u32) -> Result<()> {
     write().with_context(|| format!("writing {}", path.display()))
 }
 
+/// From this share of white pixels on, a PNG says little.
+const MUCH_WHITE: f64 = 0.5;
+
+/// What a PNG of the film does not show, if that is much: photometric lights, in candela and lux, make pictures of
+/// hundreds and thousands.
+pub(crate) fn clipping(film: &Film) -> Option<String> {
+    // Rounding of white is white.
+    const WHITE: f32 = 1.01;
+    let image = film.image();
+    let is_clipped = |rgb: &&[f32; 3]| rgb.iter().all(|&value| value > WHITE);
+    let share = image.iter().filter(is_clipped).count() as f64 / image.len() as f64;
+    let [red, green, blue] = film.mean();
+    (share >= MUCH_WHITE).then(|| {
+        format!(
+            "{:.0} % of the pixels are brighter than a display shows and white in the PNG (the mean is {:.3e}): are \
+             the lights in candela and lux? An .exr keeps what there is",
+            100.0 * share,
+            (red + green + blue) / 3.0
+        )
+    })
+}
+
 fn png(film: &Film) -> Result<Vec<u8>> {
     let codes = film
         .image()
@@ -248,6 +270,26 @@ mod tests {
         write(&exr, &film(), &metadata).unwrap();
         let read = image_from_exr(&exr);
         assert_eq!(read, film().image());
+    }
+
+    #[test]
+    fn white_pngs_are_told_of() {
+        let film = |value: f32| {
+            let mut film = Film::new(4, 1, 64, Layers::NONE);
+            // One pixel of four is dark.
+            let pixels: Vec<f32> = (0..12).map(|k| if k < 3 { 0.1 } else { value }).collect();
+            film.tiles_mut()[0].add(&pixels);
+            film
+        };
+        assert_eq!(clipping(&film(1.0)), None);
+        let message = clipping(&film(2000.0)).unwrap();
+        assert!(
+            message.contains("75 %") && message.contains("1.500e3"),
+            "{message}"
+        );
+        let mut coloured = Film::new(1, 1, 64, Layers::NONE);
+        coloured.tiles_mut()[0].add(&[0.5, 9.0, 9.0]);
+        assert_eq!(clipping(&coloured), None, "colours are no white");
     }
 
     fn image_from_exr(path: &Path) -> Vec<[f32; 3]> {
