@@ -110,10 +110,112 @@ fn chains_of_a_thousand_nodes_compose_exactly_and_cycles_are_refused() {
     assert!(found.distance(glam::DVec3::new(expected, 0.0, 0.0)) < 1e-6);
 
     gltf.json["nodes"] = json!([{ "children": [1] }, { "children": [0], "name": "loop" }]);
-    gltf.refused(&["nodes/0", "reached twice"]);
-    gltf.json["nodes"] =
-        json!([{ "children": [1, 2] }, { "children": [3] }, { "children": [3] }, { "mesh": 0 }]);
-    gltf.refused(&["nodes/3", "reached twice"]);
+    gltf.refused(&["nodes/0", "its own children"]);
+}
+
+#[test]
+fn children_of_several_parents_are_shown_below_each() {
+    let mut gltf = Gltf::square();
+    gltf.json["nodes"] = json!([
+        { "children": [1, 2] },
+        { "children": [3], "translation": [1, 0, 0] },
+        { "children": [3], "translation": [2, 0, 0] },
+        { "mesh": 0, "name": "shared" },
+    ]);
+    // Roots that are named twice are one.
+    gltf.json["scenes"][0]["nodes"] = json!([0, 0]);
+    let scene = gltf.import().unwrap();
+    let places: Vec<f32> = scene
+        .instances
+        .iter()
+        .map(|instance| instance.transform.translation.x)
+        .collect();
+    assert_eq!(places, [1.0, 2.0]);
+    assert_eq!(scene.meshes.len(), 1, "read once");
+    assert!(warns(&scene, "nodes/3 \"shared\"", "several parents"));
+
+    // Level by level they would be 2⁶⁴.
+    let levels = (0..64).map(|k| json!({ "children": [k + 1, k + 1] }));
+    let mut nodes: Vec<Value> = levels.collect();
+    nodes.push(json!({ "mesh": 0 }));
+    gltf.json["nodes"] = json!(nodes);
+    gltf.refused(&["more than 1048576 nodes"]);
+}
+
+#[test]
+fn hidden_nodes_hide_meshes_and_lights_below_them_but_no_cameras() {
+    let mut gltf = Gltf::square();
+    gltf.json["extensionsRequired"] = json!(["KHR_node_visibility"]);
+    gltf.json["cameras"] =
+        json!([{ "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 } }]);
+    gltf.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "type": "point" }] } });
+    let visible = |is: bool| json!({ "KHR_node_visibility": { "visible": is } });
+    gltf.json["nodes"] = json!([
+        { "children": [1, 2, 3], "extensions": visible(false) },
+        { "mesh": 0, "extensions": visible(true), "name": "below" },
+        { "camera": 0 },
+        { "extensions": { "KHR_lights_punctual": { "light": 0 } } },
+        { "mesh": 0, "extensions": visible(true) },
+        { "mesh": 0, "extensions": { "KHR_node_visibility": {} } },
+    ]);
+    gltf.json["scenes"][0]["nodes"] = json!([0, 4, 5]);
+    let scene = gltf.import().unwrap();
+    let names: Vec<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
+    assert_eq!(names, ["node 4", "node 5"]);
+    assert_eq!((scene.lights.len(), scene.cameras.len()), (0, 1));
+    let reasons = scene.dismissed.iter();
+    assert!(
+        reasons
+            .clone()
+            .any(|d| d.place.contains("below") && d.reason.contains("hides"))
+    );
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn other_versions_are_told_apart() {
+    let mut gltf = Gltf::square();
+    gltf.json["asset"] = json!({ "version": "2.0", "minVersion": "2.1" });
+    gltf.refused(&["asset/minVersion", "glTF 2.1"]);
+    gltf.json["asset"] = json!({ "version": "2.7", "minVersion": "2.0" });
+    assert!(gltf.import().is_ok());
+    gltf.json["asset"] = json!({ "version": "3.0" });
+    gltf.refused(&["asset/version", "\"3.0\" is not 2.0"]);
+    // glTF 1.0, with and without a version.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("old.gltf");
+    let files = [
+        json!({ "asset": { "version": "1.0" }, "meshes": { "m": { "primitives": [] } }, "nodes": {} }),
+        json!({ "asset": { "version": 1.0 }, "nodes": {} }),
+        json!({ "buffers": { "b": { "uri": "b.bin" } }, "nodes": {}, "scene": "main" }),
+        json!({ "asset": { "version": "1.1" } }),
+    ];
+    for file in files {
+        std::fs::write(&path, file.to_string()).unwrap();
+        let options = residual_scenegen::import::ImportOptions::default();
+        let message = residual_scenegen::import::import(&path, &options)
+            .unwrap_err()
+            .to_string();
+        let is_told = message.contains("glTF 1.0") || message.contains("\"1.1\" is not 2.0");
+        assert!(is_told, "{file}: {message}");
+    }
+    std::fs::write(&path, b"glTF\x01\0\0\0\x20\0\0\0").unwrap();
+    let options = residual_scenegen::import::ImportOptions::default();
+    let message = residual_scenegen::import::import(&path, &options).unwrap_err();
+    assert!(
+        message.to_string().contains("version 1, not 2"),
+        "{message}"
+    );
+}
+
+#[test]
+fn files_of_several_scenes_without_a_default_say_which_is_shown() {
+    let mut gltf = Gltf::square();
+    gltf.json.as_object_mut().unwrap().remove("scene");
+    gltf.json["scenes"] = json!([{ "nodes": [0] }, { "nodes": [] }]);
+    let scene = gltf.import().unwrap();
+    assert_eq!(scene.instances.len(), 1);
+    assert!(warns(&scene, "scene", "the first is shown"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use gltf::json::{Index, Mesh};
+use gltf::json::{Index, Mesh, Node};
 
 use super::accessors::Accessors;
 use super::document::Document;
@@ -34,7 +34,12 @@ fn read(document: &Document, warnings: &mut Warnings) -> Result<SceneDesc, Fault
     let nodes = nodes::flatten(document, warnings)?;
     let mut placements = Vec::new();
     for (index, placed) in nodes.iter().enumerate() {
-        if let Some(mesh) = placed.node.mesh {
+        if !placed.is_visible && shows_something(placed.node) {
+            warnings.dismiss(None, &*placed.place, "KHR_node_visibility hides it");
+        }
+        if placed.is_visible
+            && let Some(mesh) = placed.node.mesh
+        {
             reader.place(mesh, index, placed, &mut placements, warnings)?;
         }
     }
@@ -45,7 +50,9 @@ fn read(document: &Document, warnings: &mut Warnings) -> Result<SceneDesc, Fault
     for placed in &nodes {
         let extensions = placed.node.extensions.as_ref();
         let light = extensions.and_then(|extensions| extensions.khr_lights_punctual.as_ref());
-        if let Some(light) = light {
+        if placed.is_visible
+            && let Some(light) = light
+        {
             let light = lights::read(document, light.light, placed, scene.origin, warnings)?;
             scene.lights.extend(light);
         }
@@ -59,6 +66,12 @@ fn read(document: &Document, warnings: &mut Warnings) -> Result<SceneDesc, Fault
     scene.meshes = reader.meshes.list;
     (scene.materials, scene.textures, scene.images) = reader.materials.finish(warnings);
     Ok(scene)
+}
+
+/// Whether a node has a mesh or a light.
+fn shows_something(node: &Node) -> bool {
+    let extensions = node.extensions.as_ref();
+    node.mesh.is_some() || extensions.is_some_and(|used| used.khr_lights_punctual.is_some())
 }
 
 /// What nodes with meshes fill.
