@@ -145,6 +145,7 @@ fn children_of_several_parents_are_shown_below_each() {
 #[test]
 fn hidden_nodes_hide_meshes_and_lights_below_them_but_no_cameras() {
     let mut gltf = Gltf::square();
+    gltf.primitive()["mode"] = json!(5);
     gltf.json["extensionsRequired"] = json!(["KHR_node_visibility"]);
     gltf.json["cameras"] =
         json!([{ "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 } }]);

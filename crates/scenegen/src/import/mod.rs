@@ -23,6 +23,7 @@ mod budget;
 mod environment;
 mod error;
 mod files;
+mod folders;
 mod gltf;
 mod guard;
 mod images;
