@@ -60,6 +60,8 @@ impl Builder {
             position,
             rotation,
             projection,
+            frame_aspect: None,
+            clip: None,
         });
     }
 

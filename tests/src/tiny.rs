@@ -480,6 +480,16 @@ fn alphas() -> Vec<Tiny> {
             &[],
             cut(AlphaMode::Blend),
         ),
+        // The light of a lamp of which parts are cut out.
+        Tiny::new(
+            "masked_emission",
+            &[&reads[..], &[Effect::AlphaMasks, Effect::EmittingSurfaces]].concat(),
+            &[],
+            textured(false, REPEAT, Filter::Linear, |texture| MaterialDesc {
+                emission: color([1.5, 1.0, 0.5]),
+                ..cut_out(texture, AlphaMode::Mask(0.4))
+            }),
+        ),
     ]
 }
 

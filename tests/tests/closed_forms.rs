@@ -164,7 +164,9 @@ fn camera(eye: [f32; 3], half: f32, forward: [f32; 3]) -> CameraRecord {
     CameraRecord {
         eye: eye.into(),
         right: [half, 0.0, 0.0].into(),
+        frame_width: 0.0,
         up: [0.0, half, 0.0].into(),
+        frame_height: half,
         forward: forward.into(),
     }
 }

@@ -48,6 +48,7 @@ goldens! {
     dielectric_coat
     independent_sampler
     linear_texels
+    masked_emission
     matte
     metal
     mirror

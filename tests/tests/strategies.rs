@@ -5,9 +5,12 @@ use residual_render::film::Film;
 use residual_render::layer::{Layer, Layers};
 use residual_render::passes::RenderOptions;
 use residual_render::tracer::{AnyMis, TracerNode};
-use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::desc::{
+    AlphaMode, Filter, MaterialDesc, Projection, ScalarInput, SceneDesc, Wrap,
+};
 use residual_scenegen::plan::{LightPicks, PlanOptions, plan};
-use residual_tests::{Prepared, fixtures};
+use residual_tests::Prepared;
+use residual_tests::fixtures::{self, Builder, color, material, matte, scalar, sheet};
 use std::ops::ControlFlow;
 
 const SIZE: [u32; 2] = [48, 36];
@@ -61,7 +64,67 @@ fn agree(a: &Film, b: &Film, what: &str) {
 
 /// The scenes have a roof's or a sky's light, points and spots, and glossy surfaces.
 fn scenes() -> Vec<(&'static str, SceneDesc)> {
-    vec![("room", fixtures::room()), ("lights", fixtures::lights())]
+    vec![
+        ("room", fixtures::room()),
+        ("lights", fixtures::lights()),
+        ("lamps with alpha", lamps_with_alpha()),
+    ]
+}
+
+/// Lamps of which parts are cut out or let light through, in front of one another, and panes below them.
+fn lamps_with_alpha() -> SceneDesc {
+    let mut b = Builder::new("lamps with alpha");
+    b.add(
+        material("floor", matte([0.8, 0.7, 0.6])),
+        [sheet([-2.0, 0.0, 2.0], [4.0, 0.0, 0.0], [0.0, 0.0, -4.0])],
+    );
+    let image = b.bytes(7, 5);
+    let alpha = ScalarInput {
+        factor: 1.0,
+        texture: Some((b.texture(image, [Wrap::Repeat; 2], Filter::Linear), 3)),
+    };
+    let lamps = [
+        (AlphaMode::Blend, alpha.clone(), 1.5),
+        (AlphaMode::Mask(0.5), alpha, 1.7),
+        (AlphaMode::Blend, scalar(0.25), 1.9),
+        (AlphaMode::Opaque, scalar(0.25), 2.1),
+    ];
+    for (alpha_mode, alpha, height) in lamps {
+        let lamp = MaterialDesc {
+            emission: color([3.0, 2.0, 1.0]),
+            alpha_mode,
+            alpha,
+            double_sided: true,
+            ..material("lamp", matte([0.5; 3]))
+        };
+        b.add(
+            lamp,
+            [sheet(
+                [-0.5, height, 0.5],
+                [1.0, 0.0, 0.0],
+                [0.0, 0.0, -1.0],
+            )],
+        );
+    }
+    for height in [0.6, 0.7, 0.8] {
+        let pane = MaterialDesc {
+            alpha_mode: AlphaMode::Blend,
+            alpha: scalar(0.4),
+            double_sided: true,
+            ..material("pane", matte([0.2, 0.5, 0.8]))
+        };
+        b.add(
+            pane,
+            [sheet(
+                [-1.0, height, 1.0],
+                [1.2, 0.0, 0.0],
+                [0.0, 0.0, -2.0],
+            )],
+        );
+    }
+    let lens = Projection::Perspective { yfov: 0.9 };
+    b.camera("camera", [0.5, 2.5, 4.5], [0.0, 0.7, 0.0], lens);
+    b.finish()
 }
 
 #[test]

@@ -101,7 +101,9 @@ pub(super) fn data(params_of_programs: &[Vec<u32>]) -> SceneData {
     data.push(CameraRecord {
         eye: [0.0, 0.0, 3.0].into(),
         right: [1.0, 0.0, 0.0].into(),
+        frame_width: 0.0,
         up: [0.0, 1.0, 0.0].into(),
+        frame_height: 1.0,
         forward: [0.0, 0.0, -2.0].into(),
     });
     data

@@ -1,7 +1,6 @@
 //! From radiance to what a screen shows: exposure, then a tone curve, then the codes of sRGB. Files of linear radiance know
 //! nothing of it.
 
-use std::fmt;
 use std::str::FromStr;
 
 use clap::ValueEnum;
@@ -18,18 +17,27 @@ pub struct Display {
 }
 
 /// The factor on radiance before the curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Exposure {
+    /// 1, but metered where most of the picture would be white: photometric lights, in candela and lux, make pictures of
+    /// hundreds and thousands.
+    #[default]
+    Fitting,
     /// 2 to the power of so many stops.
     Stops(f32),
     /// As a camera meters it: the mean luminance, averaged over its logarithm where there is light, becomes middle grey.
     Auto,
 }
 
-impl Default for Exposure {
-    fn default() -> Self {
-        Self::Stops(0.0)
-    }
+/// From this share of white pixels on, a picture says little.
+const MUCH_WHITE: f64 = 0.5;
+
+/// The part of the pixels that are brighter than white in all channels.
+fn part_beyond_white(image: &[[f32; 3]]) -> f64 {
+    // Rounding of white is white.
+    const WHITE: f32 = 1.01;
+    let is_beyond = |rgb: &&[f32; 3]| rgb.iter().all(|&value| value > WHITE);
+    image.iter().filter(is_beyond).count() as f64 / image.len().max(1) as f64
 }
 
 /// Reflectance of a photographer's grey card.
@@ -39,8 +47,9 @@ impl Exposure {
     /// The factor for an image.
     pub fn factor(self, image: &[[f32; 3]]) -> f32 {
         match self {
+            Self::Fitting if part_beyond_white(image) < MUCH_WHITE => 1.0,
             Self::Stops(stops) => stops.exp2(),
-            Self::Auto => {
+            Self::Fitting | Self::Auto => {
                 let luminances = image.iter().map(|rgb| luminance(*rgb));
                 let lit = luminances.filter(|y| *y > 0.0 && y.is_finite());
                 let (sum, count) = lit.fold((0.0, 0_u32), |(sum, n), y| (sum + y.ln(), n + 1));
@@ -64,15 +73,6 @@ impl FromStr for Exposure {
             .filter(|stops| stops.abs() <= 64.0)
             .map(Self::Stops)
             .ok_or_else(|| "expected auto, or stops from -64 to 64, as in -1.5".to_owned())
-    }
-}
-
-impl fmt::Display for Exposure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Stops(stops) => write!(f, "{stops}"),
-            Self::Auto => f.write_str("auto"),
-        }
     }
 }
 
@@ -112,6 +112,19 @@ impl ToneMap {
 }
 
 impl Display {
+    /// What was done to an image that nobody has asked for.
+    pub fn note(self, image: &[[f32; 3]]) -> Option<String> {
+        let stops = self.exposure.factor(image).log2();
+        let is_changed = self.exposure == Exposure::Fitting && stops != 0.0;
+        is_changed.then(|| {
+            format!(
+                "{:.0} % of the pixels are brighter than white, as lights in candela and lux make them; the PNG is exposed by \
+                 {stops:.1} stops (--exposure 0 shows them as they are)",
+                100.0 * part_beyond_white(image)
+            )
+        })
+    }
+
     /// The codes of an image.
     pub fn codes(self, image: &[[f32; 3]]) -> Vec<[u8; 3]> {
         let factor = self.exposure.factor(image);
@@ -340,6 +353,29 @@ mod tests {
         let dark = [[0.1_f32, 0.2, 0.3], [0.4, 0.1, 0.05]];
         let bright = dark.map(|rgb| rgb.map(|c| 683.0 * c));
         assert_eq!(display.codes(&dark), display.codes(&bright));
+    }
+
+    #[test]
+    fn pictures_that_would_be_white_are_exposed() {
+        let display = Display::default();
+        let white = vec![[326.0, 326.0, 300.0], [500.0; 3], [1500.0; 3], [0.5; 3]];
+        let note = display.note(&white).unwrap();
+        assert!(note.starts_with("75 %") && note.contains("stops"), "{note}");
+        assert!(display.codes(&white)[0] < display.codes(&white)[2]);
+        // White, colours and a few highlights are no reason.
+        for image in [
+            vec![[1.0; 3]],
+            vec![[0.5, 9.0, 9.0]],
+            vec![[0.5; 3], [0.1; 3], [40.0; 3]],
+        ] {
+            assert_eq!(display.note(&image), None);
+            assert_eq!(display.exposure.factor(&image), 1.0);
+        }
+        let asked = Display {
+            exposure: Exposure::Stops(0.0),
+            ..display
+        };
+        assert_eq!(asked.note(&white), None);
     }
 
     #[test]

@@ -18,9 +18,10 @@ pub struct RenderArgs {
     /// Image file (.png, .exr); may be given more than once
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Brightness of a PNG in stops (-1.5), or auto, which makes the mean middle grey
-    #[arg(long, value_name = "STOPS|auto", default_value_t = Exposure::default(), allow_hyphen_values = true)]
-    pub exposure: Exposure,
+    /// Brightness of a PNG in stops (-1.5), or auto, which makes the mean middle grey [default: 0, or auto where most of it would be
+    /// white]
+    #[arg(long, value_name = "STOPS|auto", allow_hyphen_values = true)]
+    pub exposure: Option<Exposure>,
     /// How a PNG shows what is brighter than white
     #[arg(long, value_enum, default_value_t = ToneMap::default())]
     pub tonemap: ToneMap,
@@ -64,7 +65,7 @@ impl RenderArgs {
     /// How pictures of 8 bits are made.
     pub fn display(&self) -> Display {
         Display {
-            exposure: self.exposure,
+            exposure: self.exposure.unwrap_or_default(),
             tone_map: self.tonemap,
         }
     }

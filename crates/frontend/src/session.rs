@@ -14,7 +14,7 @@ use residual_render::layer::Layers;
 use residual_render::passes::{Counters, Pass, Progress, RenderOptions, render_passes};
 
 use crate::options::{RenderArgs, StatsFormat};
-use crate::output::{self, Metadata};
+use crate::output::{self, Format, Metadata};
 use crate::precision;
 use crate::process_time;
 use crate::progress::Reporter;
@@ -148,6 +148,12 @@ impl<'a> Session<'a> {
 
     /// Says how it went; statistics where they were asked for.
     pub fn finish(&self, statistics: &Statistics<'_>) {
+        let is_png = |path: &PathBuf| matches!(Format::of(path), Ok(Format::Png));
+        if let Some(path) = self.outputs.iter().find(|path| is_png(path))
+            && let Some(message) = self.args.display().note(&statistics.rendered.film.image())
+        {
+            eprintln!("warning: {}: {message}", path.display());
+        }
         if !self.args.quiet {
             self.summary(statistics);
         }

@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 
 use anyhow::bail;
-use residual_frontend::display::{Exposure, ToneMap};
+use residual_frontend::display::ToneMap;
 use residual_frontend::options::RenderArgs;
 use residual_frontend::session::Session;
 use residual_render::film::Film;
@@ -17,7 +17,7 @@ fn what_there_was_before_is_written_and_the_failure_told() {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("image.png");
     let args = RenderArgs {
-        exposure: Exposure::default(),
+        exposure: None,
         tonemap: ToneMap::default(),
         output: vec![image.clone()],
         spp: Some(8),

@@ -145,12 +145,8 @@ fn lights_agree() {
     };
     set_lights(&mut data, &[lamp], &[1.0]);
     check("area", &data, &Light(area), &inputs);
-    let spot = PunctualRecord {
-        scale: 2.0,
-        axis: [0.0, 0.0, -1.0].into(),
-        offset: -0.5,
-        ..PunctualRecord::new(0, [0.3, 0.2, 0.933], [5.0, 4.0, 3.0])
-    };
+    let axis = [0.0, 0.0, -1.0];
+    let spot = PunctualRecord::spot(0, [0.3, 0.2, 0.933], [5.0, 4.0, 3.0], axis, [0.4, 1.3]);
     set_lights(&mut data, &[spot], &[1.0]);
     check("point", &data, &Light(Point), &inputs);
     check("spot", &data, &Light(Spot), &inputs);

@@ -189,14 +189,10 @@ fn punctual_lights_are_their_closed_forms() {
         // A spot of KHR_lights_punctual: inner and outer cone angles of 0.2 and 0.6.
         let axis = unit([0.1, 0.2, -1.0]);
         let (inner, outer) = (0.2_f64.cos(), 0.6_f64.cos());
-        let scale = 1.0 / (inner - outer);
-        let falloff = ((-dot(axis, wi) - outer) * scale).clamp(0.0, 1.0).powi(2);
-        let spot = PunctualRecord {
-            scale: scale as f32,
-            axis: axis.map(|c| c as f32).into(),
-            offset: (-outer * scale) as f32,
-            ..punctual(place, intensity)
-        };
+        let falloff = (-dot(axis, wi) - outer) / (inner - outer);
+        let falloff = falloff.clamp(0.0, 1.0).powi(2);
+        let axis = axis.map(|c| c as f32);
+        let spot = PunctualRecord::spot(0, place, [intensity, 0.0, 0.0], axis, [0.2, 0.6]);
         set_lights(&mut data, &[spot], &[1.0]);
         close(
             estimate(&data, &(Spot, ()), normal, 2, 135),
@@ -219,6 +215,45 @@ fn punctual_lights_are_their_closed_forms() {
             .value()
             .is_finite()
     );
+}
+
+/// Cones down to a ten-thousandth of a degree, with soft and with hard edges, beside the formula of KHR_lights_punctual in
+/// 64 bits.
+#[test]
+fn narrow_spots_fall_off_as_wide_ones() {
+    let mut data = scene(&[FLOOR]);
+    let to = [0.0_f32, 0.0, 0.0];
+    for outer in [1.5, 0.5, 0.05, 0.019, 4e-3, 1e-4, 2e-6_f32] {
+        for inner in [0.0, 0.5, 0.999, 1.0].map(|share| share * outer) {
+            for share in [0.0, 0.3, 0.7, 0.99, 1.01, 1.5] {
+                // Off the axis by this share of the cone, 10 away.
+                let angle = share * f64::from(outer);
+                let position = [10.0 * angle.sin(), 0.0, 10.0 * angle.cos()].map(|c| c as f32);
+                let axis = [0.0, 0.0, -1.0];
+                let spot = PunctualRecord::spot(0, position, [100.0; 3], axis, [inner, outer]);
+                set_lights(&mut data, &[spot], &[1.0]);
+                let buffers = data.buffers();
+                let d = Scalar::new(&buffers);
+                let sample = Spot.sample(d, Uint(0), to.into(), [0.5; 3]);
+                let versine = |angle: f64| 2.0 * (angle / 2.0).sin().powi(2);
+                let [full, edge] = [inner, outer].map(|angle| versine(angle.into()));
+                let exact = match inner == outer {
+                    true => f64::from(u8::from(share < 1.0)),
+                    false => ((edge - versine(angle)) / (edge - full))
+                        .clamp(0.0, 1.0)
+                        .powi(2),
+                };
+                // A ramp as steep as that is all rounding in its middle.
+                let is_ramp = inner > 0.99 * outer && inner < outer && exact > 0.0 && exact < 1.0;
+                let found = f64::from(sample.radiance.x);
+                let bound = if is_ramp { 1.0 } else { 1e-3 };
+                assert!(
+                    (found - exact).abs() <= bound,
+                    "{inner} {outer} {share}: {found} {exact}"
+                );
+            }
+        }
+    }
 }
 
 #[test]

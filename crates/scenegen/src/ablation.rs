@@ -9,6 +9,7 @@ use crate::desc::{
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
 use crate::plan::{CullingRule, PlanOptions};
+use crate::sixteen_bits;
 
 /// How an effect is taken out of a scene, in words; `None` for those without which there is no picture, or which
 /// others stand for (a texel's format, a wrap mode).
@@ -218,6 +219,10 @@ fn mean(texels: &Texels) -> [[f32; 4]; 2] {
         sum.map(|sum| (sum / count) as f32)
     };
     match texels {
+        Texels::Rgba16(texels) => [
+            over(&mut texels.iter().copied().map(sixteen_bits::linear_texel)),
+            over(&mut texels.iter().copied().map(sixteen_bits::decoded_texel)),
+        ],
         Texels::RgbaF32(texels) => [over(&mut texels.iter().copied()); 2],
         Texels::Rgba8(texels) => {
             let table = srgb_table();

@@ -7,7 +7,7 @@
 //!
 //! Space: right-handed, +Y up, metres, as glTF. Colours are linear Rec. 709 unless an image says sRGB.
 
-use glam::{Affine3A, Quat, Vec2, Vec3, Vec4};
+use glam::{Affine3A, DVec3, Quat, Vec2, Vec3, Vec4};
 
 use crate::effect::Effect;
 
@@ -16,6 +16,9 @@ use crate::effect::Effect;
 pub struct SceneDesc {
     /// File stem, used for the default name of the image.
     pub name: String,
+    /// Where in the file's world the scene's own lies: 0 but for scenes that are far away, of which 32 bits would not hold
+    /// the details. All positions here are relative to it.
+    pub origin: DVec3,
     /// Decoded images, each once.
     pub images: Vec<ImageDesc>,
     /// Images together with their samplers.
@@ -91,7 +94,9 @@ pub struct ImageDesc {
 pub enum Texels {
     /// Four bytes a texel, as stored in the file. Whether colour is sRGB-encoded is said by its use.
     Rgba8(Vec<[u8; 4]>),
-    /// Linear, finite, non-negative (16-bit PNGs, HDR and EXR images).
+    /// Four numbers of 16 bits a texel, likewise (16-bit PNGs).
+    Rgba16(Vec<[u16; 4]>),
+    /// Linear, finite, non-negative (HDR and EXR images).
     RgbaF32(Vec<[f32; 4]>),
 }
 
@@ -147,7 +152,7 @@ pub struct TextureUse {
 pub struct ColorInput {
     /// Linear factor.
     pub factor: [f32; 3],
-    /// Colour texture; [`Texels::Rgba8`] is decoded from sRGB.
+    /// Colour texture; [`Texels::Rgba8`] and [`Texels::Rgba16`] are decoded from sRGB.
     pub texture: Option<TextureUse>,
 }
 
@@ -325,7 +330,7 @@ pub enum PunctualKind {
         direction: Vec3,
         /// Half-angle of full intensity, radians.
         inner: f32,
-        /// Half-angle where it ends, radians; inner < outer ≤ π/2.
+        /// Half-angle where it ends, radians; inner ≤ outer ≤ π/2, outer > 0. Where both are the same, the edge is hard.
         outer: f32,
     },
     /// Shines along one direction from infinitely far away.
@@ -346,6 +351,20 @@ pub struct CameraDesc {
     pub rotation: Quat,
     /// Lens.
     pub projection: Projection,
+    /// Width over height of what the file frames, all of which images of any shape show; `None` where only the height
+    /// counts.
+    pub frame_aspect: Option<f32>,
+    /// Where the file's camera begins and ends to see, which is not rendered; `None` where the file says nothing of it.
+    pub clip: Option<ClipDistances>,
+}
+
+/// Along the view axis from the eye, in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClipDistances {
+    /// What is nearer is not seen.
+    pub near: f32,
+    /// What is farther is not seen; `None` where everything is.
+    pub far: Option<f32>,
 }
 
 /// A camera's projection.

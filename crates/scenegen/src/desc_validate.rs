@@ -32,10 +32,16 @@ fn require(holds: bool, place: impl FnOnce() -> String, problem: &str) -> Check 
 impl SceneDesc {
     /// Checks every invariant that the module documentation of [`crate::desc`] names.
     pub fn validate(&self) -> Result<(), Violation> {
+        require(
+            self.origin.is_finite(),
+            || "origin".to_owned(),
+            "is not finite",
+        )?;
         for (i, image) in self.images.iter().enumerate() {
             let expected = u64::from(image.width) * u64::from(image.height);
             let (count, is_valid) = match &image.texels {
                 Texels::Rgba8(texels) => (texels.len(), true),
+                Texels::Rgba16(texels) => (texels.len(), true),
                 Texels::RgbaF32(texels) => (
                     texels.len(),
                     texels
@@ -278,8 +284,15 @@ fn check_light(i: usize, light: &LightDesc) -> Check {
                 place,
                 "has no unit direction",
             )?;
-            let is_cone = inner >= 0.0 && inner < outer && outer <= std::f32::consts::FRAC_PI_2;
-            require(is_cone, place, "has a cone without 0 ≤ inner < outer ≤ π/2")
+            let is_cone = inner >= 0.0
+                && inner <= outer
+                && outer > 0.0
+                && outer <= std::f32::consts::FRAC_PI_2;
+            require(
+                is_cone,
+                place,
+                "has a cone without 0 ≤ inner ≤ outer ≤ π/2, outer > 0",
+            )
         }
         PunctualKind::Directional { direction } => require(
             is_unit(direction.length_squared()),
@@ -300,6 +313,12 @@ fn check_camera(i: usize, camera: &CameraDesc) -> Check {
         is_unit(camera.rotation.length_squared()),
         place,
         "has no unit rotation",
+    )?;
+    let is_frame = |aspect: f32| aspect > 0.0 && aspect.is_finite();
+    require(
+        camera.frame_aspect.is_none_or(is_frame),
+        place,
+        "has a frame of no positive width over height",
     )?;
     match camera.projection {
         Projection::Perspective { yfov } => require(

@@ -12,6 +12,7 @@ mod fingerprint;
 mod ground;
 pub mod import;
 pub mod plan;
+mod sixteen_bits;
 mod studio;
 
 pub use desc_validate::Violation;

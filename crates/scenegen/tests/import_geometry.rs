@@ -197,10 +197,48 @@ fn colours_are_read_with_and_without_alpha() {
         "COLOR_0",
         "VEC3",
         F32,
-        &f32_bytes(&[0.25, 0.5, 2.].repeat(4)),
+        &f32_bytes(&[0.25, 0.5, 1.].repeat(4)),
         4,
     );
-    assert_eq!(gltf.mesh().colors.unwrap()[0], Vec4::new(0.25, 0.5, 2., 1.));
+    assert_eq!(gltf.mesh().colors.unwrap()[0], Vec4::new(0.25, 0.5, 1., 1.));
+}
+
+#[test]
+fn vertex_colours_are_forced_into_their_range_component_by_component() {
+    let colors = |kind: &str, component: u64, bytes: &[u8]| {
+        let mut gltf = Gltf::square();
+        gltf.attribute("COLOR_0", kind, component, bytes, 4);
+        let mut scene = gltf.import().unwrap();
+        (scene.meshes.remove(0).colors.unwrap()[0], scene)
+    };
+    let floats = |values: [f32; 4]| colors("VEC4", F32, &f32_bytes(&values.repeat(4)));
+    let outside = "outside of 0 to 1 and clamped";
+    let at = "meshes/0 \"m\"/primitives/0";
+    let (color, scene) = floats([4.0, 0.5, 0.25, 1.0]);
+    assert_eq!(color, Vec4::new(1.0, 0.5, 0.25, 1.0));
+    assert!(warns(
+        &scene,
+        at,
+        &format!("4 vertex colours are {outside}")
+    ));
+    let (color, scene) = floats([-0.001, 0.5, 0.5, 1.5]);
+    assert_eq!(color, Vec4::new(0.0, 0.5, 0.5, 1.0));
+    assert!(warns(&scene, at, outside));
+    let (color, _) = floats([f32::INFINITY, f32::NEG_INFINITY, 0.5, 1.0]);
+    assert_eq!(color, Vec4::new(1.0, 0.0, 0.5, 1.0));
+    let (color, scene) = floats([f32::NAN, 0.5, 2.0, 0.25]);
+    assert_eq!(color, Vec4::new(1.0, 0.5, 1.0, 0.25));
+    assert!(warns(&scene, at, "4 vertex colours are NaN; 1 is used"));
+    let (color, scene) = floats([0.0, 0.5, 1.0, 0.25]);
+    assert_eq!(color, Vec4::new(0.0, 0.5, 1.0, 0.25));
+    assert_eq!(scene.warnings.len(), 1, "the strip's: {:?}", scene.warnings);
+
+    // Bytes whose accessor forgets that they are fractions.
+    let (color, scene) = colors("VEC4", U8, &[255, 51, 0, 255].repeat(4));
+    assert_eq!(color, Vec4::new(1.0, 0.2, 0.0, 1.0));
+    assert!(warns(&scene, "COLOR_0", "not normalized"));
+    let (color, _) = colors("VEC3", U16, &u16_bytes(&[0, 65535, 13107].repeat(4)));
+    assert_eq!(color, Vec4::new(0.0, 1.0, 0.2, 1.0));
 }
 
 #[test]

@@ -236,7 +236,7 @@ fn missing_and_broken_images_have_stand_ins() {
     let scene = gltf.import().unwrap();
     let texel = |i: usize| match &scene.images[i].texels {
         Texels::Rgba8(texels) => texels[0],
-        Texels::RgbaF32(_) => panic!("8 bits"),
+        Texels::Rgba16(_) | Texels::RgbaF32(_) => panic!("8 bits"),
     };
     assert_eq!((texel(0), texel(1)), ([255; 4], [128, 128, 255, 255]));
     assert!(warns(&scene, "images/0", "missing.png"));

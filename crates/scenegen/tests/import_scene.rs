@@ -44,7 +44,7 @@ fn lights_stand_in_the_world() {
     };
     assert_eq!(position, Vec3::new(1., 2., 3.));
     assert!((direction + Vec3::X).length() < 1e-6);
-    assert!(inner < outer && outer == 0.1);
+    assert_eq!([inner, outer], [0.1, 0.1], "a hard edge");
     assert!(warns(&scene, "lights/1", "innerConeAngle"));
     assert_eq!(
         scene.lights[2].kind,
@@ -60,7 +60,7 @@ fn cameras_forget_scale_and_impossible_lenses() {
     gltf.json["cameras"] = json!([
         { "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 } },
         { "type": "orthographic", "orthographic": { "xmag": 1, "ymag": 2, "znear": 0, "zfar": 1 } },
-        { "type": "perspective", "perspective": { "yfov": 4, "znear": 0.1 } },
+        { "type": "perspective", "perspective": { "yfov": 4, "znear": 0.1, "aspectRatio": -1 } },
     ]);
     gltf.json["nodes"] = json!([
         { "camera": 0, "name": "eye", "translation": [0, 0, 5], "scale": [3, 1, 2] },
@@ -90,6 +90,9 @@ fn cameras_forget_scale_and_impossible_lenses() {
         Projection::Perspective { yfov: FRAC_PI_4 }
     );
     assert!(warns(&scene, "cameras/2", "yfov"));
+    assert!(warns(&scene, "cameras/2", "aspectRatio -1"));
+    let frames: Vec<_> = scene.cameras.iter().map(|eye| eye.frame_aspect).collect();
+    assert_eq!(frames, [None, Some(0.5), None]);
     assert!(warns(&scene, "nodes/3", "orientation"));
 }
 
@@ -102,17 +105,118 @@ fn chains_of_a_thousand_nodes_compose_exactly_and_cycles_are_refused() {
     nodes.push(json!({ "mesh": 0 }));
     gltf.json["nodes"] = json!(nodes);
     let scene = gltf.import().unwrap();
-    let expected = (0.1_f32 as f64 * 4999.0) as f32;
-    assert_eq!(
-        scene.instances[0].transform.translation,
-        Vec3A::new(expected, 0., 0.)
-    );
+    let expected = f64::from(0.1_f32) * 4999.0;
+    let found = scene.origin + Vec3::from(scene.instances[0].transform.translation).as_dvec3();
+    assert!(found.distance(glam::DVec3::new(expected, 0.0, 0.0)) < 1e-6);
 
     gltf.json["nodes"] = json!([{ "children": [1] }, { "children": [0], "name": "loop" }]);
-    gltf.refused(&["nodes/0", "reached twice"]);
-    gltf.json["nodes"] =
-        json!([{ "children": [1, 2] }, { "children": [3] }, { "children": [3] }, { "mesh": 0 }]);
-    gltf.refused(&["nodes/3", "reached twice"]);
+    gltf.refused(&["nodes/0", "its own children"]);
+}
+
+#[test]
+fn children_of_several_parents_are_shown_below_each() {
+    let mut gltf = Gltf::square();
+    gltf.json["nodes"] = json!([
+        { "children": [1, 2] },
+        { "children": [3], "translation": [1, 0, 0] },
+        { "children": [3], "translation": [2, 0, 0] },
+        { "mesh": 0, "name": "shared" },
+    ]);
+    // Roots that are named twice are one.
+    gltf.json["scenes"][0]["nodes"] = json!([0, 0]);
+    let scene = gltf.import().unwrap();
+    let places: Vec<f32> = scene
+        .instances
+        .iter()
+        .map(|instance| instance.transform.translation.x)
+        .collect();
+    assert_eq!(places, [1.0, 2.0]);
+    assert_eq!(scene.meshes.len(), 1, "read once");
+    assert!(warns(&scene, "nodes/3 \"shared\"", "several parents"));
+
+    // Level by level they would be 2⁶⁴.
+    let levels = (0..64).map(|k| json!({ "children": [k + 1, k + 1] }));
+    let mut nodes: Vec<Value> = levels.collect();
+    nodes.push(json!({ "mesh": 0 }));
+    gltf.json["nodes"] = json!(nodes);
+    gltf.refused(&["more than 1048576 nodes"]);
+}
+
+#[test]
+fn hidden_nodes_hide_meshes_and_lights_below_them_but_no_cameras() {
+    let mut gltf = Gltf::square();
+    gltf.primitive()["mode"] = json!(5);
+    gltf.json["extensionsRequired"] = json!(["KHR_node_visibility"]);
+    gltf.json["cameras"] =
+        json!([{ "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 } }]);
+    gltf.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "type": "point" }] } });
+    let visible = |is: bool| json!({ "KHR_node_visibility": { "visible": is } });
+    gltf.json["nodes"] = json!([
+        { "children": [1, 2, 3], "extensions": visible(false) },
+        { "mesh": 0, "extensions": visible(true), "name": "below" },
+        { "camera": 0 },
+        { "extensions": { "KHR_lights_punctual": { "light": 0 } } },
+        { "mesh": 0, "extensions": visible(true) },
+        { "mesh": 0, "extensions": { "KHR_node_visibility": {} } },
+    ]);
+    gltf.json["scenes"][0]["nodes"] = json!([0, 4, 5]);
+    let scene = gltf.import().unwrap();
+    let names: Vec<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
+    assert_eq!(names, ["node 4", "node 5"]);
+    assert_eq!((scene.lights.len(), scene.cameras.len()), (0, 1));
+    let reasons = scene.dismissed.iter();
+    assert!(
+        reasons
+            .clone()
+            .any(|d| d.place.contains("below") && d.reason.contains("hides"))
+    );
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn other_versions_are_told_apart() {
+    let mut gltf = Gltf::square();
+    gltf.json["asset"] = json!({ "version": "2.0", "minVersion": "2.1" });
+    gltf.refused(&["asset/minVersion", "glTF 2.1"]);
+    gltf.json["asset"] = json!({ "version": "2.7", "minVersion": "2.0" });
+    assert!(gltf.import().is_ok());
+    gltf.json["asset"] = json!({ "version": "3.0" });
+    gltf.refused(&["asset/version", "\"3.0\" is not 2.0"]);
+    // glTF 1.0, with and without a version.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("old.gltf");
+    let files = [
+        json!({ "asset": { "version": "1.0" }, "meshes": { "m": { "primitives": [] } }, "nodes": {} }),
+        json!({ "asset": { "version": 1.0 }, "nodes": {} }),
+        json!({ "buffers": { "b": { "uri": "b.bin" } }, "nodes": {}, "scene": "main" }),
+        json!({ "asset": { "version": "1.1" } }),
+    ];
+    for file in files {
+        std::fs::write(&path, file.to_string()).unwrap();
+        let options = residual_scenegen::import::ImportOptions::default();
+        let message = residual_scenegen::import::import(&path, &options)
+            .unwrap_err()
+            .to_string();
+        let is_told = message.contains("glTF 1.0") || message.contains("\"1.1\" is not 2.0");
+        assert!(is_told, "{file}: {message}");
+    }
+    std::fs::write(&path, b"glTF\x01\0\0\0\x20\0\0\0").unwrap();
+    let options = residual_scenegen::import::ImportOptions::default();
+    let message = residual_scenegen::import::import(&path, &options).unwrap_err();
+    assert!(
+        message.to_string().contains("version 1, not 2"),
+        "{message}"
+    );
+}
+
+#[test]
+fn files_of_several_scenes_without_a_default_say_which_is_shown() {
+    let mut gltf = Gltf::square();
+    gltf.json.as_object_mut().unwrap().remove("scene");
+    gltf.json["scenes"] = json!([{ "nodes": [0] }, { "nodes": [] }]);
+    let scene = gltf.import().unwrap();
+    assert_eq!(scene.instances.len(), 1);
+    assert!(warns(&scene, "scene", "the first is shown"));
 }
 
 #[test]
@@ -187,4 +291,65 @@ fn floods_of_warnings_are_cut() {
     let scene = gltf.import().unwrap();
     assert_eq!(scene.warnings.len(), 1001);
     assert!(warns(&scene, "warnings", "more warnings"));
+}
+
+/// What is near one another in a survey stays so, however the file writes where it is.
+#[test]
+fn scenes_far_away_are_relative_to_a_place_among_them() {
+    let place = [431_200.503, 120.25, -4_649_776.127_f64];
+    let beside = |x: f64, y: f64, z: f64| [place[0] + x, place[1] + y, place[2] + z];
+    let light = json!({ "KHR_lights_punctual": { "light": 0 } });
+    let matrix = |t: [f64; 3]| json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, t[0], t[1], t[2], 1]);
+    let layouts = [
+        // All below one node.
+        json!([
+            { "children": [1, 2, 3, 4], "translation": place },
+            { "mesh": 0 },
+            { "mesh": 0, "translation": [0.01, 0, 0] },
+            { "camera": 0, "translation": [0, 0, 0.75] },
+            { "extensions": light, "translation": [0, 2.5, 0] },
+        ]),
+        // Each by itself.
+        json!([
+            { "children": [1, 2, 3, 4] },
+            { "mesh": 0, "translation": place },
+            { "mesh": 0, "matrix": matrix(beside(0.01, 0.0, 0.0)) },
+            { "camera": 0, "translation": beside(0.0, 0.0, 0.75) },
+            { "extensions": light, "matrix": matrix(beside(0.0, 2.5, 0.0)) },
+        ]),
+    ];
+    let mut gltf = Gltf::square();
+    gltf.indices(U8, &[0, 1, 2], 3);
+    gltf.json["cameras"] = json!([{ "type": "perspective",
+        "perspective": { "yfov": 0.5, "znear": 0.1 } }]);
+    gltf.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "type": "point" }] } });
+    for nodes in layouts {
+        gltf.json["nodes"] = nodes;
+        let scene = gltf.import().unwrap();
+        let near = |found: Vec3, offset: [f64; 3]| {
+            let found = scene.origin + found.as_dvec3();
+            let expected = glam::DVec3::from(beside(offset[0], offset[1], offset[2]));
+            // The parent's translation is read in 64 bits as well.
+            assert!(found.distance(expected) < 1e-6, "{found} {expected}");
+        };
+        assert!(scene.origin.distance(glam::DVec3::from(place)) < 2.0);
+        near(scene.instances[0].transform.translation.into(), [0.0; 3]);
+        near(
+            scene.instances[1].transform.translation.into(),
+            [0.01, 0.0, 0.0],
+        );
+        near(scene.cameras[0].position, [0.0, 0.0, 0.75]);
+        let PunctualKind::Point { position } = scene.lights[0].kind else {
+            panic!("point")
+        };
+        near(position, [0.0, 2.5, 0.0]);
+    }
+    // Near scenes stay where they are, to the bit.
+    gltf.json["nodes"] = json!([{ "mesh": 0, "translation": [20, 0.1, 0] }]);
+    let scene = gltf.import().unwrap();
+    assert_eq!(scene.origin, glam::DVec3::ZERO);
+    assert_eq!(
+        scene.instances[0].transform.translation,
+        Vec3A::new(20.0, 0.1, 0.0)
+    );
 }

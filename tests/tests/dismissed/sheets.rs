@@ -47,6 +47,7 @@ fn fill(texel: &Texels, far: Option<&Texels>) -> Texels {
     match (texel, far.unwrap_or(texel)) {
         (Texels::Rgba8(texel), Texels::Rgba8(far)) => Texels::Rgba8(all(texel[0], far[0])),
         (Texels::RgbaF32(texel), Texels::RgbaF32(far)) => Texels::RgbaF32(all(texel[0], far[0])),
+        (Texels::Rgba16(texel), Texels::Rgba16(far)) => Texels::Rgba16(all(texel[0], far[0])),
         _ => unreachable!("both are bytes or both are numbers"),
     }
 }

@@ -15,7 +15,7 @@ pub use environment::{Environment, EnvironmentHeader, set_environment};
 pub use pick::{
     LIGHT_WORDS, LightRecord, Pick, PickHeader, pick, pick_probability, push_light, set_picks,
 };
-pub use punctual::{Directional, Point, PunctualRecord, Spot};
+pub use punctual::{Directional, Point, PunctualRecord, Spot, versine};
 
 use crate::domain::{Bundle, Domain};
 use crate::math::{Color, Vec3};

@@ -1,6 +1,8 @@
 //! Point, spot and directional lights (KHR_lights_punctual).
 //!
-//! A spot's intensity falls off with `clamp(cos·scale + offset)²`, as the extension recommends.
+//! A spot's intensity falls off with `clamp((cos − cos outer) / (cos inner − cos outer))²`, as the extension recommends.
+//! Cosines of small angles are 1 in 32 bits; so the formula is written in versines, 1 − cos θ = |a + b|²/2 of unit vectors
+//! a and −b, which keep their digits in cones of any width.
 
 use super::{LightKind, LightSample};
 use crate::domain::{Buffer, Domain};
@@ -29,14 +31,14 @@ record! {
         row {
             /// Radiant intensity; of a directional light, irradiance at normal incidence.
             intensity: vector,
-            /// Of a spot: what the cosine of the angle to the axis is multiplied with.
+            /// Of a spot: what a versine's difference to that of the edge is multiplied with.
             scale: real,
         }
         row {
             /// Of a spot: the unit direction in which it shines.
             axis: vector,
-            /// Of a spot: what is added to the scaled cosine.
-            offset: real,
+            /// Of a spot: the versine of the half-angle at which it ends.
+            edge: real,
         }
     }
 }
@@ -52,9 +54,32 @@ impl PunctualRecord {
             intensity: intensity.into(),
             scale: 0.0,
             axis: [0.0; 3].into(),
-            offset: 0.0,
+            edge: 0.0,
         }
     }
+
+    /// A spot that shines along the unit vector `axis`, with its full intensity up to the half-angle `inner` and with
+    /// none beyond `outer`, both in radians, `inner` ≤ `outer`. Where the two are the same, its edge is hard.
+    pub fn spot(
+        kind: u32,
+        position: [f32; 3],
+        intensity: [f32; 3],
+        axis: [f32; 3],
+        [inner, outer]: [f32; 2],
+    ) -> Self {
+        let (full, edge) = (versine(inner), versine(outer));
+        Self {
+            scale: (1.0 / (edge - full)).min(f64::from(f32::MAX)) as f32,
+            axis: axis.into(),
+            edge: edge as f32,
+            ..Self::new(kind, position, intensity)
+        }
+    }
+}
+
+/// 1 − cos of an angle in radians, without cancellation.
+pub fn versine(angle: f32) -> f64 {
+    2.0 * (0.5 * f64::from(angle)).sin().powi(2)
 }
 
 impl<D: Domain> PunctualRecord<D> {
@@ -93,8 +118,9 @@ impl<D: Domain> LightKind<D> for Spot {
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
         let record = PunctualRecord::of_light(d, record);
         let everywhere = record.arriving_at(d, from);
-        let cos = -record.axis.dot(d, everywhere.wi);
-        let falloff = d.fma(cos, record.scale, record.offset);
+        let across = record.axis + everywhere.wi;
+        let versine = across.dot(d, across) * d.lit(0.5);
+        let falloff = (record.edge - versine) * record.scale;
         let falloff = d.min(d.max(falloff, d.lit(0.0)), d.lit(1.0));
         LightSample {
             radiance: everywhere.radiance.scale(falloff * falloff),

@@ -48,6 +48,7 @@ nodes! {
         VertexColor,
         Image = image: ImageNode,
         Product(a: Box<ScalarNode>, b: Box<ScalarNode>),
+        AtLeast(a: Box<ScalarNode>, b: Box<ScalarNode>),
     }
 
     /// A kind of light.

@@ -132,6 +132,16 @@ impl BsdfNode {
 }
 
 impl AlphaTestNode {
+    /// How much of the surface is there, from 0 to 1.
+    pub fn coverage(&self) -> ScalarNode {
+        match self {
+            Self::AlphaMask { alpha, cutoff, .. } => {
+                ScalarNode::AtLeast(Box::new(alpha.clone()), Box::new(cutoff.clone()))
+            }
+            Self::AlphaBlend { alpha, .. } => alpha.clone(),
+        }
+    }
+
     /// The vertex attributes that it is given.
     pub fn given_attributes(&self) -> Attributes {
         let fields = self.literal().fields.into_iter();

@@ -103,6 +103,18 @@ impl<D: Domain, A: ScalarSource<D>, B: ScalarSource<D>> ScalarSource<D> for Prod
     }
 }
 
+/// 1 where a number is at least another, else 0.
+#[derive(Clone, Copy, Debug)]
+pub struct AtLeast<A, B>(pub A, pub B);
+
+impl<D: Domain, A: ScalarSource<D>, B: ScalarSource<D>> ScalarSource<D> for AtLeast<A, B> {
+    #[inline(always)]
+    fn scalar(&self, d: D, surface: &Surface<D>) -> D::F {
+        let is_least = d.le(self.1.scalar(d, surface), self.0.scalar(d, surface));
+        d.select(is_least, d.lit(1.0), d.lit(0.0))
+    }
+}
+
 /// A number as a grey colour.
 #[derive(Clone, Copy, Debug)]
 pub struct Gray<S>(pub S);

@@ -76,7 +76,9 @@ pub(crate) fn scene() -> SceneData {
     data.push(CameraRecord {
         eye: vector(),
         right: vector(),
+        frame_width: 0.0,
         up: vector(),
+        frame_height: 1.0,
         forward: vector(),
     });
     let picks = alias_entries(&mut random, 5, 2);

@@ -5,6 +5,7 @@ use super::options::EnvironmentOptions;
 use super::warnings::Warnings;
 use super::{files, images};
 use crate::desc::{EnvironmentDesc, SceneDesc, Texels};
+use crate::sixteen_bits;
 
 const ADVICE: &str = "give a latitude-longitude image as .hdr, .exr or .png";
 
@@ -38,9 +39,14 @@ pub(super) fn append(
         .map_err(|problem| fault(format!("the image {problem}")))?;
     let place = format!("environment \"{}\"", file.display());
     decoded.warn(&place, warnings);
-    if let Texels::Rgba8(texels) = &decoded.texels {
-        decoded.texels = Texels::RgbaF32(texels.iter().map(|&texel| from_srgb(texel)).collect());
-    }
+    decoded.texels = Texels::RgbaF32(match decoded.texels {
+        Texels::Rgba8(texels) => texels.into_iter().map(from_srgb).collect(),
+        Texels::Rgba16(texels) => {
+            let texels = texels.into_iter();
+            texels.map(sixteen_bits::decoded_texel).collect()
+        }
+        Texels::RgbaF32(texels) => texels,
+    });
     let name = file
         .file_name()
         .unwrap_or(file.as_os_str())

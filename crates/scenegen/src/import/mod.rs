@@ -23,6 +23,7 @@ mod budget;
 mod environment;
 mod error;
 mod files;
+mod folders;
 mod gltf;
 mod guard;
 mod images;
@@ -31,6 +32,7 @@ mod mesh;
 mod missing_uvs;
 mod obj;
 mod options;
+mod origin;
 mod warnings;
 
 pub use error::ImportError;

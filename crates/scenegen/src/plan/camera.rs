@@ -1,14 +1,14 @@
 //! The camera: one of the scene's, one given by the user, or one that frames the scene.
 
 use glam::{Quat, Vec3};
-use residual_render::camera::CameraRecord;
+use residual_render::camera::{CameraRecord, fitted_height};
 use residual_render::program::CameraNode;
 use residual_render::scene_data::SceneData;
 
 use super::camera_choice::CameraChoice;
 use super::error::PlanError;
 use super::options::PlanOptions;
-use crate::desc::{CameraDesc, Projection, SceneDesc, Warning, WarningKind};
+use crate::desc::{CameraDesc, ClipDistances, Projection, SceneDesc, Warning, WarningKind};
 
 /// Bounds of the scene in world space.
 #[derive(Debug, Clone, Copy)]
@@ -56,6 +56,8 @@ fn framing(bounds: &Bounds, aspect: f32) -> CameraDesc {
         position: centre - dir * distance,
         rotation: look(dir, Vec3::Y),
         projection: Projection::Perspective { yfov: FRAMING_FOV },
+        frame_aspect: None,
+        clip: None,
     }
 }
 
@@ -89,14 +91,14 @@ fn named<'a>(scene: &'a SceneDesc, wanted: &str) -> Result<&'a CameraDesc, PlanE
     })
 }
 
-/// Chooses the camera and writes its buffer.
+/// Chooses the camera and writes its buffer. It has a kind, a name, and clip distances that are not rendered.
 pub(super) fn choose(
     scene: &SceneDesc,
     options: &PlanOptions,
     bounds: &Bounds,
     data: &mut SceneData,
     warnings: &mut Vec<Warning>,
-) -> Result<(CameraNode, String), PlanError> {
+) -> Result<(CameraNode, String, Option<ClipDistances>), PlanError> {
     let aspect = options.size[0] as f32 / options.size[1] as f32;
     let default = || {
         scene
@@ -124,7 +126,9 @@ pub(super) fn choose(
             let dir = view.dir.map_or(default.rotation * Vec3::NEG_Z, Vec3::from);
             CameraDesc {
                 name: "given".to_owned(),
-                position: view.eye.map_or(default.position, Vec3::from),
+                position: view.eye.map_or(default.position, |eye| {
+                    (Vec3::from(eye).as_dvec3() - scene.origin).as_vec3()
+                }),
                 rotation: if view.dir.is_some() || view.up.is_some() {
                     look(dir, up)
                 } else {
@@ -136,10 +140,12 @@ pub(super) fn choose(
                     },
                     None => default.projection,
                 },
+                frame_aspect: default.frame_aspect.filter(|_| view.fov.is_none()),
+                clip: default.clip,
             }
         }
     };
-    let (kind, half_height, forward) = match camera.projection {
+    let (kind, frame_height, forward) = match camera.projection {
         Projection::Perspective { yfov } => (
             CameraNode::Perspective,
             (yfov * 0.5).tan(),
@@ -151,6 +157,10 @@ pub(super) fn choose(
             camera.rotation * Vec3::NEG_Z,
         ),
     };
+    let frame_width = camera
+        .frame_aspect
+        .map_or(0.0, |frame_aspect| frame_height * frame_aspect);
+    let half_height = fitted_height([frame_width, frame_height], aspect);
     let right = camera.rotation * Vec3::X * (half_height * aspect);
     let up = camera.rotation * Vec3::Y * half_height;
     let [eye, right, up, forward] =
@@ -158,8 +168,10 @@ pub(super) fn choose(
     data.push(CameraRecord {
         eye,
         right,
+        frame_width,
         up,
+        frame_height,
         forward,
     });
-    Ok((kind, camera.name))
+    Ok((kind, camera.name, camera.clip))
 }

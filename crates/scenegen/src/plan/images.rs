@@ -8,21 +8,42 @@ use residual_render::texture::{AnyFormat, ImageParam, srgb_table};
 
 use super::error::PlanError;
 use crate::desc::{ImageDesc, SceneDesc, Texels};
+use crate::sixteen_bits;
 
 /// The images in use, with where they lie among the texels.
 #[derive(Debug, Default)]
 pub(super) struct Images {
-    /// Index of the image, first word.
-    firsts: Vec<(usize, u32)>,
+    /// What lies among the texels, with its first word.
+    firsts: Vec<(Stored, u32)>,
     words: u64,
     /// By the image's index, once asked for.
     extremes: BTreeMap<usize, Extremes>,
+}
+
+/// An image among the texels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Stored {
+    /// Its index in the scene.
+    image: usize,
+    /// Whether its codes of 16 bits are decoded from sRGB: they are stored as floats, of either kind.
+    is_decoded: bool,
+}
+
+impl Stored {
+    fn new(scene: &SceneDesc, image: usize, bytes: AnyFormat) -> Self {
+        let is_decoded = match scene.images[image].texels {
+            Texels::Rgba16(_) => bytes == AnyFormat::SrgbRgba8,
+            Texels::Rgba8(_) | Texels::RgbaF32(_) => false,
+        };
+        Self { image, is_decoded }
+    }
 }
 
 /// Least and greatest value of each channel of an image, as stored.
 #[derive(Debug, Clone, Copy)]
 enum Extremes {
     Bytes([[u8; 2]; 4]),
+    Codes([[u16; 2]; 4]),
     Floats([[f32; 2]; 4]),
 }
 
@@ -41,6 +62,7 @@ impl Extremes {
         }
         match texels {
             Texels::Rgba8(texels) => Self::Bytes(fold(texels)),
+            Texels::Rgba16(texels) => Self::Codes(fold(texels)),
             Texels::RgbaF32(texels) => Self::Floats(fold(texels)),
         }
     }
@@ -49,19 +71,25 @@ impl Extremes {
 fn words(image: &ImageDesc) -> u64 {
     let texel = match image.texels {
         Texels::Rgba8(_) => 1,
-        Texels::RgbaF32(_) => 4,
+        Texels::Rgba16(_) | Texels::RgbaF32(_) => 4,
     };
     u64::from(image.width) * u64::from(image.height) * texel
 }
 
 impl Images {
-    /// The image among the texels, to which it is added if it is not there yet.
-    pub(super) fn param(&mut self, scene: &SceneDesc, image: usize) -> ImageParam {
+    /// The image among the texels, to which it is added if it is not there yet. `bytes` is how bytes would be read.
+    pub(super) fn param(
+        &mut self,
+        scene: &SceneDesc,
+        image: usize,
+        bytes: AnyFormat,
+    ) -> ImageParam {
         let desc = &scene.images[image];
-        let found = self.firsts.iter().find(|(index, _)| *index == image);
+        let wanted = Stored::new(scene, image, bytes);
+        let found = self.firsts.iter().find(|(stored, _)| *stored == wanted);
         let first = found.map(|(_, first)| *first).unwrap_or_else(|| {
             let first = self.words as u32;
-            self.firsts.push((image, first));
+            self.firsts.push((wanted, first));
             self.words += words(desc);
             first
         });
@@ -72,7 +100,7 @@ impl Images {
         }
     }
 
-    /// Least and greatest value that a channel has when it is read, bytes as `format` says.
+    /// Least and greatest value that a channel has when it is read, bytes and codes of 16 bits as `format` says.
     pub(super) fn extremes(
         &mut self,
         scene: &SceneDesc,
@@ -87,6 +115,8 @@ impl Images {
             Extremes::Bytes(extremes) if is_encoded => {
                 extremes[channel].map(|code| srgb_table()[usize::from(code)])
             }
+            Extremes::Codes(extremes) if is_encoded => extremes[channel].map(sixteen_bits::decoded),
+            Extremes::Codes(extremes) => extremes[channel].map(sixteen_bits::linear),
             Extremes::Bytes(extremes) => extremes[channel].map(|byte| f32::from(byte) / 255.0),
             Extremes::Floats(extremes) => extremes[channel],
         }
@@ -99,10 +129,19 @@ impl Images {
         }
         let buffer = data.buffer_mut(Buffer::Texels);
         buffer.reserve_exact(self.words as usize);
-        for &(image, _) in &self.firsts {
+        for &(Stored { image, is_decoded }, _) in &self.firsts {
             match &scene.images[image].texels {
                 Texels::Rgba8(texels) => {
                     buffer.extend(texels.iter().map(|&texel| u32::from_le_bytes(texel)));
+                }
+                Texels::Rgba16(texels) => {
+                    let texel = if is_decoded {
+                        sixteen_bits::decoded_texel
+                    } else {
+                        sixteen_bits::linear_texel
+                    };
+                    let texels = texels.iter().flat_map(|&codes| texel(codes));
+                    buffer.extend(texels.map(f32::to_bits));
                 }
                 Texels::RgbaF32(texels) => {
                     buffer.extend(texels.iter().flatten().map(|c| c.to_bits()));

@@ -6,9 +6,9 @@ use residual_render::alias_table::alias_entries;
 use residual_render::light::{
     self, AreaRecord, EnvironmentHeader, LightRecord, PunctualRecord, push_light, set_picks,
 };
-use residual_render::program::{LightNode, Source, SourceNode};
+use residual_render::program::{ColorNode, LightNode, Program, Source, SourceNode};
 use residual_render::scene_data::SceneData;
-use residual_render::texture::srgb_table;
+use residual_render::texture::{AnyFormat, srgb_table};
 
 use super::geometry::Geometry;
 use super::images::Images;
@@ -18,6 +18,7 @@ use super::planned_materials::Materials;
 use crate::desc::{
     ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, Texels,
 };
+use crate::sixteen_bits;
 
 /// The kinds of lights of a scene and how many there are of each.
 #[derive(Debug, Default)]
@@ -50,6 +51,25 @@ pub(super) fn plan_lights(
     lights
 }
 
+/// The triangles of a program, which emit what a source gives. Shadow rays end before the light, so that nobody asks for
+/// its alpha, as paths that find it are asked: it shines as much less as it lets rays through.
+fn area(program: &Program, source: &ColorNode) -> LightNode {
+    let attributes = source.attributes().intersection(program.attributes);
+    match &program.alpha_test {
+        None => LightNode::Area {
+            emission: source.clone(),
+            attributes,
+        },
+        Some(test) => LightNode::Area {
+            emission: ColorNode::Product(
+                Box::new(source.clone()),
+                Box::new(ColorNode::Gray(Box::new(test.coverage()))),
+            ),
+            attributes: attributes.union(test.given_attributes()),
+        },
+    }
+}
+
 /// Luminance of a colour.
 fn luminance(c: [f32; 3]) -> f64 {
     0.2126 * f64::from(c[0]) + 0.7152 * f64::from(c[1]) + 0.0722 * f64::from(c[2])
@@ -70,6 +90,11 @@ fn mean_emission(scene: &SceneDesc, input: &ColorInput) -> f64 {
                 |t: &[u8; 4]| luminance([r * decode(t[0]), g * decode(t[1]), b * decode(t[2])]);
             texels.iter().map(texel).sum()
         }
+        Texels::Rgba16(texels) => texels
+            .iter()
+            .map(|&t| sixteen_bits::decoded_texel(t))
+            .map(|t| luminance([r * t[0], g * t[1], b * t[2]]))
+            .sum(),
         Texels::RgbaF32(texels) => texels
             .iter()
             .map(|t| luminance([r * t[0], g * t[1], b * t[2]]))
@@ -116,10 +141,7 @@ impl PlannedLights {
             let SourceNode::Color(source) = &program.inputs[emission.radiance.0].source else {
                 unreachable!("emission is a colour")
             };
-            let node = LightNode::Area {
-                emission: source.clone(),
-                attributes: source.attributes().intersection(program.attributes),
-            };
+            let node = area(program, source);
             let radiance = mean_emission(scene, &scene.materials[material].emission);
             let sides = if emission.double_sided { 2.0 } else { 1.0 };
             let source = format!("material {:?}", scene.materials[material].name);
@@ -167,15 +189,14 @@ impl PlannedLights {
                 inner,
                 outer,
             } => {
-                // KHR_lights_punctual: scale = 1/(cos inner − cos outer), offset = −cos outer·scale.
-                let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
-                let record = PunctualRecord {
-                    scale,
-                    axis: direction.to_array().into(),
-                    offset: -outer.cos() * scale,
-                    ..record(position)
-                };
-                let cone = 0.5 * sphere * (1.0 - f64::from(outer.cos()));
+                let record = PunctualRecord::spot(
+                    0,
+                    position.to_array(),
+                    light.intensity,
+                    direction.to_array(),
+                    [inner, outer],
+                );
+                let cone = 0.5 * sphere * light::versine(outer);
                 (LightNode::Spot, cone * strength, record)
             }
             PunctualKind::Directional { direction } => {
@@ -221,7 +242,7 @@ impl PlannedLights {
             std::f64::consts::PI * radius * radius * irradiance,
         );
 
-        let texels = images.param(scene, environment.image);
+        let texels = images.param(scene, environment.image, AnyFormat::LinearFloat);
         let (sin, cos) = environment.rotation.sin_cos();
         let header = EnvironmentHeader {
             width: texels.width,

@@ -8,6 +8,7 @@ mod alpha_test;
 mod bsdfs;
 mod camera;
 mod camera_choice;
+mod clip_distances;
 mod closed;
 mod error;
 mod explain;
@@ -22,6 +23,7 @@ mod planned_materials;
 mod program;
 mod sources;
 
+use glam::DVec3;
 use residual_render::domain::Buffer;
 use residual_render::layer::Layer;
 use residual_render::program::Structure;
@@ -29,6 +31,7 @@ use residual_render::scene_data::SceneData;
 use residual_render::tracer::TracerNode;
 
 pub use camera_choice::{CameraChoice, View};
+use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
 pub use options::{Binding, CullingRule, LightPicks, PlanOptions};
@@ -71,8 +74,14 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         });
         return Ok(plan);
     }
-    let (camera, camera_name) =
+    let (camera, camera_name, clip) =
         camera::choose(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
+    let mut dismissed = [&scene.dismissed[..], &materials.dismissed].concat();
+    match clip.map(|clip| clip_distances::look(clip, &camera, &camera_name, &data)) {
+        Some(Clipping::Something(warning)) => warnings.push(warning),
+        Some(Clipping::Nothing(reason)) => dismissed.push(reason),
+        None => {}
+    }
     images.pack(scene, &mut data)?;
     *data.buffer_mut(Buffer::Params) = materials.params;
 
@@ -95,8 +104,18 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         camera_name,
         diagonal: 2.0 * geometry.bounds.sphere().1,
         warnings,
-        dismissed: [&scene.dismissed[..], &materials.dismissed].concat(),
+        dismissed,
     };
+    if options.layers.has(Layer::Position) && scene.origin != DVec3::ZERO {
+        plan.warnings.push(Warning {
+            kind: WarningKind::Unfaithful,
+            place: "layer \"position\"".to_owned(),
+            message: format!(
+                "the scene is far from the origin: positions are relative to {}",
+                scene.origin
+            ),
+        });
+    }
     if options.layers.has(Layer::MaterialIndex) {
         plan.pack_objects();
     }

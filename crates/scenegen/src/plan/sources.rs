@@ -316,7 +316,7 @@ impl<'a> Sources<'a> {
         let desc = &self.scene.textures[texture.texture];
         let format = match self.scene.images[desc.image].texels {
             Texels::Rgba8(_) => bytes,
-            Texels::RgbaF32(_) => AnyFormat::LinearFloat,
+            Texels::Rgba16(_) | Texels::RgbaF32(_) => AnyFormat::LinearFloat,
         };
         let wrap = desc.wrap.map(|wrap| match wrap {
             Wrap::Repeat => AnyWrap::Repeat,
@@ -327,7 +327,7 @@ impl<'a> Sources<'a> {
             Filter::Nearest => AnyFilter::Nearest,
             Filter::Linear => AnyFilter::Bilinear,
         };
-        let image = self.images.param(self.scene, desc.image);
+        let image = self.images.param(self.scene, desc.image, bytes);
         let slot = self.param_record(image);
         let name = self.scene.images[desc.image].name.clone();
         self.image_names.insert(slot, name);

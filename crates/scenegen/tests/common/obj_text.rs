@@ -81,6 +81,6 @@ pub(crate) fn phong(material: &MaterialDesc) -> &PhongSurface {
 pub(crate) fn red(scene: &SceneDesc, texture: usize) -> u8 {
     match &scene.images[scene.textures[texture].image].texels {
         Texels::Rgba8(texels) => texels[0][0],
-        Texels::RgbaF32(_) => panic!("8 bits"),
+        Texels::Rgba16(_) | Texels::RgbaF32(_) => panic!("8 bits"),
     }
 }

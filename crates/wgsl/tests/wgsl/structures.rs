@@ -206,6 +206,13 @@ pub(crate) fn lights() -> Vec<LightNode> {
     vec![
         area(ColorNode::Param(0), Attributes::default()),
         area(ColorNode::Image(images()[0]), uv0),
+        area(
+            ColorNode::Gray(Box::new(ScalarNode::AtLeast(
+                Box::new(ScalarNode::Image(images()[0])),
+                Box::new(ScalarNode::Param(3)),
+            ))),
+            uv0,
+        ),
         LightNode::Point,
         LightNode::Spot,
         LightNode::Directional,

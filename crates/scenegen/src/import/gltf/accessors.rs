@@ -41,6 +41,38 @@ impl<'a> Accessors<'a> {
         index: Index<Accessor>,
         user: &str,
     ) -> Result<Vec<[f32; N]>, Fault> {
+        self.vectors(index, user, |encoding| encoding)
+    }
+
+    /// The same, with integers that are scaled whatever the accessor says.
+    pub(super) fn fractions<const N: usize>(
+        &mut self,
+        index: Index<Accessor>,
+        user: &str,
+    ) -> Result<Vec<[f32; N]>, Fault> {
+        self.vectors(index, user, |encoding| Encoding {
+            is_normalized: true,
+            ..encoding
+        })
+    }
+
+    /// Whether an accessor has integers that stand for themselves.
+    pub(super) fn has_plain_integers(
+        &self,
+        index: Index<Accessor>,
+        user: &str,
+    ) -> Result<bool, Fault> {
+        let accessor = get(&self.document.root.accessors, index, "accessors", user)?;
+        let is_float = matches!(accessor.component_type, Checked::Valid(component) if component.0 == ComponentType::F32);
+        Ok(!accessor.normalized && !is_float)
+    }
+
+    fn vectors<const N: usize>(
+        &mut self,
+        index: Index<Accessor>,
+        user: &str,
+        encoded: impl Fn(Encoding) -> Encoding,
+    ) -> Result<Vec<[f32; N]>, Fault> {
         let expected = match N {
             2 => Type::Vec2,
             3 => Type::Vec3,
@@ -51,6 +83,7 @@ impl<'a> Accessors<'a> {
             _ => Ok(()),
         };
         let convert = |bytes: &[u8], encoding: Encoding| {
+            let encoding = encoded(encoding);
             let size = encoding.component.size();
             std::array::from_fn(|i| encoding.to_f32(&bytes[i * size..]))
         };

@@ -1,13 +1,16 @@
 //! A glTF file's JSON and buffers, before anything is interpreted.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use gltf::json::{self, Index, Root};
 
 use super::lookup::{get, place};
-use super::{extensions, glb, root, uri};
+use super::{extensions, glb, root, translations, uri};
 use crate::import::error::{Fault, ImportError};
 use crate::import::files;
+use crate::import::folders::Folders;
 use crate::import::warnings::Warnings;
 
 /// A parsed file with its buffers.
@@ -16,6 +19,8 @@ pub(super) struct Document {
     pub(super) folder: PathBuf,
     /// The JSON.
     pub(super) root: Root,
+    /// Translations of nodes that 32 bits do not hold, by the node's index.
+    pub(super) long_translations: HashMap<usize, DVec3>,
     /// Each buffer's bytes, or why they could not be had (which matters only if someone asks).
     buffers: Vec<Result<Vec<u8>, String>>,
 }
@@ -36,13 +41,31 @@ impl Document {
         extensions::check_required(&root, file)?;
 
         let folder = file.parent().unwrap_or(Path::new(""));
+        let mut folders = Folders::default();
         let buffers = root.buffers.iter().enumerate();
         let buffers = buffers
-            .map(|(index, buffer)| load_buffer(index, buffer, folder, binary))
+            .map(|(index, buffer)| {
+                let at = place("buffers", index, buffer.name.as_deref());
+                match &buffer.uri {
+                    Some(uri) => {
+                        let content = uri::read(uri, folder, &mut folders)?;
+                        if let Some(remark) = content.remark {
+                            warnings.push(at, remark);
+                        }
+                        of_length(content.bytes, buffer)
+                    }
+                    None if index == 0 => {
+                        let bytes = binary.ok_or("has neither a uri nor a GLB binary chunk")?;
+                        of_length(bytes.to_vec(), buffer)
+                    }
+                    None => Err("has no uri".into()),
+                }
+            })
             .collect();
         extensions::warn_about_root(&root, warnings);
         Ok(Self {
             folder: folder.to_owned(),
+            long_translations: translations::long(root::without_mark(json), &root),
             root,
             buffers,
         })
@@ -74,19 +97,8 @@ impl Document {
     }
 }
 
-fn load_buffer(
-    index: usize,
-    buffer: &json::Buffer,
-    folder: &Path,
-    binary: Option<&[u8]>,
-) -> Result<Vec<u8>, String> {
-    let mut bytes = match &buffer.uri {
-        Some(uri) => uri::read(uri, folder)?,
-        None if index == 0 => binary
-            .ok_or("has neither a uri nor a GLB binary chunk")?
-            .to_vec(),
-        None => return Err("has no uri".into()),
-    };
+/// The bytes of a buffer, without what lies behind it.
+fn of_length(mut bytes: Vec<u8>, buffer: &json::Buffer) -> Result<Vec<u8>, String> {
     let length =
         usize::try_from(buffer.byte_length.0).map_err(|_| "byteLength is too large".to_owned())?;
     if bytes.len() < length {

@@ -39,6 +39,7 @@ impl Support {
             | "KHR_materials_unlit"
             | "KHR_materials_volume"
             | "KHR_mesh_quantization"
+            | "KHR_node_visibility"
             | "KHR_texture_transform" => Self::Imported,
             "KHR_xmp" | "KHR_xmp_json_ld" | "KHR_animation_pointer" => Self::WithoutEffect,
             "KHR_materials_anisotropy" => Self::MaterialSwitch("anisotropyStrength"),
@@ -49,10 +50,9 @@ impl Support {
             "KHR_materials_dispersion" => Self::MaterialSwitch("dispersion"),
             "KHR_materials_iridescence" => Self::MaterialSwitch("iridescenceFactor"),
             "KHR_materials_sheen" => Self::MaterialSwitch("sheenColorFactor"),
-            SPECULAR_GLOSSINESS
-            | "KHR_node_visibility"
-            | "KHR_texture_basisu"
-            | "MSFT_texture_dds" => Self::ReportedWhereUsed,
+            SPECULAR_GLOSSINESS | "KHR_texture_basisu" | "MSFT_texture_dds" => {
+                Self::ReportedWhereUsed
+            }
             _ => Self::Unknown,
         }
     }

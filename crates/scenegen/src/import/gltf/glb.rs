@@ -1,5 +1,6 @@
 //! The container of binary glTF files.
 
+use super::root::EXPORT_AS_2;
 use crate::import::error::Fault;
 
 /// The type of the chunk of JSON, `JSON` in ASCII.
@@ -15,9 +16,10 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
         Some(u32::from_le_bytes(word.try_into().ok()?))
     };
     let truncated = |at: usize| Fault::new(format!("byte {at}"), "the GLB file ends too early");
-    if word(4).ok_or_else(|| truncated(4))? != 2 {
-        return Err(Fault::new("byte 4", "the GLB container's version is not 2")
-            .advise("export it as glTF 2.0"));
+    let version = word(4).ok_or_else(|| truncated(4))?;
+    if version != 2 {
+        let problem = format!("the GLB container is of glTF version {version}, not 2");
+        return Err(Fault::new("byte 4", problem).advise(EXPORT_AS_2));
     }
     let length = word(8).ok_or_else(|| truncated(8))? as usize;
     if length > bytes.len() {

@@ -11,12 +11,14 @@ use super::lookup::{get, place};
 use super::uri::{self, Uri};
 use crate::desc::ImageDesc;
 use crate::import::error::Fault;
+use crate::import::folders::Folders;
 use crate::import::images::{self, ImageRequest, ImageRole};
 use crate::import::warnings::Warnings;
 
 /// Images in use, still encoded.
 pub(super) struct Images<'a> {
     document: &'a Document,
+    folders: Folders,
     requests: Vec<ImageRequest<'a>>,
     /// From indices in the file to those in the scene.
     indices: BTreeMap<usize, usize>,
@@ -27,6 +29,7 @@ impl<'a> Images<'a> {
     pub(super) fn new(document: &'a Document) -> Self {
         Self {
             document,
+            folders: Folders::default(),
             requests: Vec::new(),
             indices: BTreeMap::new(),
         }
@@ -48,6 +51,7 @@ impl<'a> Images<'a> {
         index: Index<Image>,
         role: ImageRole,
         user: &str,
+        warnings: &mut Warnings,
     ) -> Result<usize, Fault> {
         let document = self.document;
         let image = get(&document.root.images, index, "images", user)?;
@@ -65,7 +69,15 @@ impl<'a> Images<'a> {
                 .view(view, &at)
                 .map(|(bytes, _)| Cow::Borrowed(bytes))
                 .map_err(|fault| format!("cannot be read ({}: {})", fault.place, fault.problem)),
-            (None, Some(uri)) => uri::read(uri, &document.folder).map(Cow::Owned),
+            (None, Some(uri)) => {
+                let content = uri::read(uri, &document.folder, &mut self.folders);
+                content.map(|content| {
+                    if let Some(remark) = content.remark {
+                        warnings.push(&*at, remark);
+                    }
+                    Cow::Owned(content.bytes)
+                })
+            }
             (None, None) => Err("has neither a uri nor a bufferView".into()),
         };
         let file_name = uri.filter(|uri| !matches!(Uri::new(uri), Uri::Data(_)));

@@ -1,7 +1,7 @@
 //! EXT_mesh_gpu_instancing: copies of a node's mesh.
 
 use glam::{DAffine3, DQuat, DVec3};
-use gltf::json::Index;
+use gltf::json::{Index, Value};
 
 use super::accessors::Accessors;
 use super::nodes::PlacedNode;
@@ -38,8 +38,16 @@ pub(super) fn copies(
         accessor("ROTATION")?,
         accessor("SCALE")?,
     );
+    // Copies may differ in attributes of their own only, which are not shown, and still be so many.
+    let attributes = instancing.get("attributes").and_then(Value::as_object);
+    let names = attributes
+        .into_iter()
+        .flat_map(|attributes| attributes.keys());
+    let all = names
+        .map(|name| accessor(name))
+        .collect::<Result<Vec<_>, _>>()?;
     let mut count = None;
-    for index in [translation, rotation, scale].into_iter().flatten() {
+    for index in all.into_iter().flatten() {
         let elements = accessors.count(index, &at)?;
         if *count.get_or_insert(elements) != elements {
             return Err(Fault::new(at, "the attributes have different counts"));

@@ -14,11 +14,12 @@ use crate::desc::{LightDesc, PunctualKind};
 use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
 
-/// The light of a node; `None`, after a warning, where it cannot shine.
+/// The light of a node, relative to an origin; `None`, after a warning, where it cannot shine.
 pub(super) fn read(
     document: &Document,
     index: Index<Light>,
     placed: &PlacedNode<'_>,
+    origin: DVec3,
     warnings: &mut Warnings,
 ) -> Result<Option<LightDesc>, Fault> {
     let extension = document
@@ -39,7 +40,7 @@ pub(super) fn read(
         light.name.as_deref(),
     );
 
-    let position = placed.world.translation.as_vec3();
+    let position = (placed.world.translation - origin).as_vec3();
     let direction = placed
         .world
         .transform_vector3(DVec3::NEG_Z)
@@ -93,7 +94,7 @@ pub(super) fn read(
     }))
 }
 
-/// The cone's half-angles, with 0 ≤ inner < outer ≤ π/2.
+/// The cone's half-angles, with 0 ≤ inner ≤ outer ≤ π/2 and outer > 0.
 fn cone(light: &Light, at: &str, warnings: &mut Warnings) -> (f32, f32) {
     let (inner, outer) = light.spot.as_ref().map_or((0.0, FRAC_PI_4), |spot| {
         (spot.inner_cone_angle, spot.outer_cone_angle)
@@ -111,17 +112,18 @@ fn cone(light: &Light, at: &str, warnings: &mut Warnings) -> (f32, f32) {
             format!("outerConeAngle {outer} is not in (0, π/2]; π/4 is used"),
         );
     }
-    if inner >= 0.0 && inner < valid_outer {
+    // The specification wants the two to differ; exporters write the same for a hard edge.
+    if inner >= 0.0 && inner <= valid_outer {
         return (inner, valid_outer);
     }
     let valid_inner = if inner >= valid_outer {
-        valid_outer * 0.999
+        valid_outer
     } else {
         0.0
     };
     warnings.push(
         at,
-        format!("innerConeAngle {inner} is not in [0, outerConeAngle); {valid_inner} is used"),
+        format!("innerConeAngle {inner} is not in [0, outerConeAngle]; {valid_inner} is used"),
     );
     (valid_inner, valid_outer)
 }

@@ -23,12 +23,14 @@ mod materials;
 mod members;
 mod meshes;
 mod nodes;
+mod placements;
 mod primitives;
 mod root;
 mod scene;
 mod surface;
 mod texture_reference;
 mod textures;
+mod translations;
 mod uri;
 
 pub(crate) use external_files::external_files;

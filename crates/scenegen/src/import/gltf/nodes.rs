@@ -1,13 +1,21 @@
 //! The node hierarchy: from a scene's roots to world transforms, without recursion.
 
+use std::collections::HashSet;
+
 use glam::{DAffine3, DMat4, DQuat, DVec3};
-use gltf::json::{Index, Node, Scene};
+use gltf::json::{Index, Node, Scene, Value};
 
 use super::document::Document;
 use super::extensions;
 use super::lookup::{get, place};
-use crate::import::error::Fault;
+use crate::import::error::{Fault, MAKE_SMALLER};
 use crate::import::warnings::Warnings;
+
+/// More nodes than this are not placed: children shared level by level multiply.
+const MAX_PLACED: usize = 1 << 20;
+
+/// Nodes that are not to be seen, with all below them.
+const VISIBILITY: &str = "KHR_node_visibility";
 
 /// A node of the scene with its world transform.
 pub(super) struct PlacedNode<'a> {
@@ -19,42 +27,83 @@ pub(super) struct PlacedNode<'a> {
     pub(super) place: String,
     /// Object to world.
     pub(super) world: DAffine3,
+    /// Whether its mesh and its light are shown.
+    pub(super) is_visible: bool,
 }
 
-/// Nodes of the default scene, parents first; of all root nodes where the file names no scene.
+/// What the walk does next.
+enum Turn {
+    /// Places a node below a parent.
+    Enter {
+        node: Index<Node>,
+        parent: DAffine3,
+        is_visible: bool,
+    },
+    /// Leaves a node, all below which are placed.
+    Leave(usize),
+}
+
+/// Nodes of the default scene, parents first; of all root nodes where the file names no scene. Nodes with several parents,
+/// which the specification forbids and exporters write, are placed below each.
 pub(super) fn flatten<'a>(
     document: &'a Document,
     warnings: &mut Warnings,
 ) -> Result<Vec<PlacedNode<'a>>, Fault> {
     let root = &document.root;
-    let mut roots = roots(document)?;
-    roots.reverse();
-    let mut stack: Vec<(Index<Node>, DAffine3)> = roots
-        .into_iter()
-        .map(|node| (node, DAffine3::IDENTITY))
+    let enter = |node, parent, is_visible| Turn::Enter {
+        node,
+        parent,
+        is_visible,
+    };
+    let roots = roots(document, warnings)?.into_iter().rev();
+    let mut stack: Vec<Turn> = roots
+        .map(|node| enter(node, DAffine3::IDENTITY, true))
         .collect();
-    let mut visited = vec![false; root.nodes.len()];
+    let mut is_above = vec![false; root.nodes.len()];
+    let mut is_placed = vec![false; root.nodes.len()];
     let mut placed = Vec::new();
-    while let Some((index, parent)) = stack.pop() {
+    while let Some(turn) = stack.pop() {
+        let (index, parent, is_visible) = match turn {
+            Turn::Enter {
+                node,
+                parent,
+                is_visible,
+            } => (node, parent, is_visible),
+            Turn::Leave(index) => {
+                is_above[index] = false;
+                continue;
+            }
+        };
         let node = get(&root.nodes, index, "nodes", "scene")?;
         let index = index.value();
         let place = place("nodes", index, node.name.as_deref());
-        // A second visit could only end in a cycle or, with nodes shared level by level, in 2ⁿ instances.
-        if std::mem::replace(&mut visited[index], true) {
-            return Err(Fault::new(
-                place,
-                "is reached twice: nodes must form a tree, without shared children",
-            ));
+        if std::mem::replace(&mut is_above[index], true) {
+            return Err(Fault::new(place, "is a child of its own children"));
         }
-        let world = parent * local(node, &place, warnings);
+        stack.push(Turn::Leave(index));
+        if placed.len() == MAX_PLACED {
+            let problem =
+                format!("more than {MAX_PLACED} nodes, those with several parents below each");
+            return Err(Fault::new("nodes", problem).advise(MAKE_SMALLER));
+        }
+        let is_first = !std::mem::replace(&mut is_placed[index], true);
+        if !is_first {
+            warnings.push(&*place, "is reached from several parents; shown below each");
+        }
+        let mut local = local(node, &place, warnings);
+        if let Some(&translation) = document.long_translations.get(&index) {
+            local.translation = translation;
+        }
+        let world = parent * local;
+        let is_visible = is_visible && !is_hidden(node);
         for &child in node.children.iter().flatten().rev() {
             get(&root.nodes, child, "nodes", &place)?;
-            stack.push((child, world));
+            stack.push(enter(child, world, is_visible));
         }
-        if let Some(used) = &node.extensions {
+        if is_first && let Some(used) = &node.extensions {
             extensions::warn_about_others(
                 &used.others,
-                &["EXT_mesh_gpu_instancing"],
+                &["EXT_mesh_gpu_instancing", VISIBILITY],
                 &place,
                 warnings,
             );
@@ -65,19 +114,36 @@ pub(super) fn flatten<'a>(
             name,
             place,
             world,
+            is_visible,
         });
     }
     Ok(placed)
 }
 
-fn roots(document: &Document) -> Result<Vec<Index<Node>>, Fault> {
+fn is_hidden(node: &Node) -> bool {
+    let extensions = node.extensions.as_ref();
+    let visibility = extensions.and_then(|used| used.others.get(VISIBILITY));
+    visibility.and_then(|used| used.get("visible")) == Some(&Value::Bool(false))
+}
+
+fn roots(document: &Document, warnings: &mut Warnings) -> Result<Vec<Index<Node>>, Fault> {
     let root = &document.root;
     let scene: Option<&Scene> = match root.scene {
         Some(index) => Some(get(&root.scenes, index, "scenes", "scene")?),
         None => root.scenes.first(),
     };
+    if root.scene.is_none() && root.scenes.len() > 1 {
+        let message = format!(
+            "the file does not say which of its {} scenes is the default; the first is shown",
+            root.scenes.len()
+        );
+        warnings.push("scene", message);
+    }
     if let Some(scene) = scene {
-        return Ok(scene.nodes.clone());
+        let mut nodes = scene.nodes.clone();
+        let mut seen = HashSet::new();
+        nodes.retain(|node| seen.insert(node.value()));
+        return Ok(nodes);
     }
     let mut is_child = vec![false; root.nodes.len()];
     for child in root

@@ -77,7 +77,7 @@ pub(super) fn read(
     };
     let uvs = [uvs(0)?, uvs(1)?];
     let colors = attribute(Semantic::Colors(0))
-        .map(|index| reader.colors(index))
+        .map(|index| reader.colors(index, warnings))
         .transpose()?;
 
     let corners = match primitive.indices {
@@ -126,6 +126,16 @@ impl Attributes<'_, '_> {
     ) -> Result<Vec<V>, Fault> {
         let user = format!("{}/attributes/{name}", self.at);
         let values = self.accessors.floats::<N>(index, &user)?;
+        self.of_vertices(values, user, vector)
+    }
+
+    /// Values, after a check that there is one for each vertex.
+    fn of_vertices<const N: usize, V>(
+        &mut self,
+        values: Vec<[f32; N]>,
+        user: String,
+        vector: impl Fn([f32; N]) -> V,
+    ) -> Result<Vec<V>, Fault> {
         let expected = *self.count.get_or_insert(values.len());
         if values.len() != expected {
             let problem = format!("has {} elements, but POSITION has {expected}", values.len());
@@ -134,10 +144,25 @@ impl Attributes<'_, '_> {
         Ok(values.into_iter().map(vector).collect())
     }
 
-    fn colors(&mut self, index: Index<Accessor>) -> Result<Vec<Vec4>, Fault> {
-        match self.accessors.components(index, self.at)? {
-            3 => self.vectors(index, "COLOR_0", |rgb| Vec3::from_array(rgb).extend(1.0)),
-            _ => self.vectors(index, "COLOR_0", Vec4::from_array),
+    /// Colours, whose integers are fractions of the largest even where the accessor does not say so.
+    fn colors(
+        &mut self,
+        index: Index<Accessor>,
+        warnings: &mut Warnings,
+    ) -> Result<Vec<Vec4>, Fault> {
+        let user = format!("{}/attributes/COLOR_0", self.at);
+        if self.accessors.has_plain_integers(index, &user)? {
+            let message =
+                "the vertex colours are integers that are not normalized; read as if they were";
+            warnings.push(&*user, message);
+        }
+        if self.accessors.components(index, &user)? == 3 {
+            let values = self.accessors.fractions::<3>(index, &user)?;
+            let opaque = |rgb| Vec3::from_array(rgb).extend(1.0);
+            self.of_vertices(values, user, opaque)
+        } else {
+            let values = self.accessors.fractions::<4>(index, &user)?;
+            self.of_vertices(values, user, Vec4::from_array)
         }
     }
 }

@@ -95,7 +95,7 @@ impl<'a> Textures<'a> {
             );
             return Ok(None);
         };
-        let image = self.images.add(source, role, &at)?;
+        let image = self.images.add(source, role, &at, warnings)?;
         if let Some(&known) = self.indices.get(&index.value()) {
             return Ok(Some(known));
         }

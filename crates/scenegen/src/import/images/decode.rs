@@ -2,22 +2,23 @@
 
 use std::io::Cursor;
 
-use exr::prelude::{ReadChannels, ReadLayers};
-use image::{DynamicImage, ImageFormat, ImageReader};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
+use super::{openexr, radiance};
 use crate::desc::{ImageDesc, Texels};
 use crate::import::budget::Budget;
 use crate::import::guard::without_panic;
 use crate::import::warnings::Warnings;
 
 /// The largest width and height.
-const MAX_EXTENT: u32 = 16384;
+pub(super) const MAX_EXTENT: u32 = 16384;
 
-/// How a file is encoded.
-#[derive(Clone, Copy)]
+/// How a file is encoded, with what was found out about it.
+#[derive(Debug)]
 pub(super) enum Encoding {
     Image(ImageFormat),
-    OpenExr,
+    OpenExr(openexr::Layout),
+    Radiance(radiance::Header),
 }
 
 /// Decodes one image that the scene cannot do without.
@@ -35,19 +36,15 @@ pub(in crate::import) struct Decoded {
     height: u32,
     /// The texels.
     pub(in crate::import) texels: Texels,
-    /// How many float texels were negative, infinite or NaN and are 0 now.
-    replaced: usize,
+    /// What was ignored, replaced or guessed.
+    remarks: Vec<String>,
 }
 
 impl Decoded {
-    /// Reports replaced texels.
+    /// Reports what is not as it is in the file.
     pub(in crate::import) fn warn(&self, place: &str, warnings: &mut Warnings) {
-        if self.replaced > 0 {
-            let message = format!(
-                "{} texels have NaN, infinite or negative values; 0 is used",
-                self.replaced
-            );
-            warnings.push(place, message);
+        for remark in &self.remarks {
+            warnings.push(place, remark);
         }
     }
 
@@ -68,50 +65,64 @@ pub(super) fn inspect(
     extension: Option<&str>,
     budget: &mut Budget,
 ) -> Result<Encoding, String> {
-    let (encoding, width, height) = without_panic(|| {
-        if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-            let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)
-                .map_err(unreadable)?;
-            let size = meta.headers.first().ok_or("has no layers")?.layer_size;
-            let extent = |size: usize| u32::try_from(size).map_err(|_| "is too large");
-            return Ok((
-                Encoding::OpenExr,
-                extent(size.width())?,
-                extent(size.height())?,
-            ));
-        }
-        let mut reader = ImageReader::new(Cursor::new(bytes));
-        if let Some(format) = extension.and_then(ImageFormat::from_extension) {
-            reader.set_format(format);
-        }
-        let reader = reader.with_guessed_format().map_err(unreadable)?;
-        let format = reader.format().ok_or("has an unknown format")?;
-        let (width, height) = reader.into_dimensions().map_err(unreadable)?;
-        Ok((Encoding::Image(format), width, height))
-    })?;
+    let (encoding, [width, height], texel_bytes) = without_panic(|| look(bytes, extension))?;
     if width == 0 || height == 0 || width > MAX_EXTENT || height > MAX_EXTENT {
         return Err(format!(
             "has {width} × {height} texels; 1 to {MAX_EXTENT} each way are read"
         ));
     }
-    let texel_bytes = match encoding {
-        Encoding::OpenExr | Encoding::Image(ImageFormat::Hdr) => 16,
-        Encoding::Image(_) => 4,
-    };
     budget
         .charge(u64::from(width) * u64::from(height), texel_bytes, "images")
         .map_err(|fault| format!("makes {}", fault.problem))?;
     Ok(encoding)
 }
 
-fn unreadable(error: impl std::fmt::Display) -> String {
+/// The encoding, width and height, and the bytes that a texel will take.
+fn look(bytes: &[u8], extension: Option<&str>) -> Result<(Encoding, [u32; 2], u64), String> {
+    if openexr::is_openexr(bytes) {
+        let layout = openexr::layout(bytes)?;
+        let size = [layout.width, layout.height];
+        return Ok((Encoding::OpenExr(layout), size, 16));
+    }
+    if radiance::is_radiance(bytes) {
+        let header = radiance::header(bytes)?;
+        let size = [header.width, header.height];
+        return Ok((Encoding::Radiance(header), size, 16));
+    }
+    let mut reader = ImageReader::new(Cursor::new(bytes));
+    if let Some(format) = extension.and_then(ImageFormat::from_extension) {
+        reader.set_format(format);
+    }
+    let reader = reader.with_guessed_format().map_err(unreadable)?;
+    let format = reader.format().ok_or("has an unknown format")?;
+    let decoder = reader.into_decoder().map_err(unreadable)?;
+    let texel_bytes = match decoder.color_type() {
+        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => 8,
+        ColorType::Rgb32F | ColorType::Rgba32F => 16,
+        _ => 4,
+    };
+    let size = decoder.dimensions().into();
+    Ok((Encoding::Image(format), size, texel_bytes))
+}
+
+/// Says that a decoder gave up.
+pub(super) fn unreadable(error: impl std::fmt::Display) -> String {
     format!("cannot be read ({error})")
 }
 
 /// Decodes an image whose encoding [`inspect`] found.
 pub(super) fn decode(bytes: &[u8], encoding: Encoding) -> Result<Decoded, String> {
     without_panic(|| match encoding {
-        Encoding::OpenExr => decode_exr(bytes),
+        Encoding::OpenExr(layout) => {
+            let texels = openexr::texels(bytes, &layout)?;
+            let size = [layout.width, layout.height];
+            Ok(valid(size, texels, layout.largest, layout.remarks))
+        }
+        Encoding::Radiance(header) => {
+            let texels = radiance::texels(bytes, &header)?;
+            let size = [header.width, header.height];
+            Ok(valid(size, texels, f32::MAX, header.remarks))
+        }
         Encoding::Image(format) => decode_with_image(bytes, format),
     })
 }
@@ -123,57 +134,66 @@ fn decode_with_image(bytes: &[u8], format: ImageFormat) -> Result<Decoded, Strin
     reader.limits(limits);
     let image = reader.decode().map_err(unreadable)?;
     let (width, height) = (image.width(), image.height());
-    Ok(match image {
+    let texels = match image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
             let texels = image.into_rgba32f().into_raw().as_chunks().0.to_vec();
-            finite(width, height, texels)
+            return Ok(valid([width, height], texels, f32::MAX, Vec::new()));
         }
-        // 16-bit images are rounded to 8 bits: whether they are sRGB-encoded is known only by their use.
-        _ => {
-            let texels = image.into_rgba8().into_raw().as_chunks().0.to_vec();
-            Decoded {
-                width,
-                height,
-                texels: Texels::Rgba8(texels),
-                replaced: 0,
-            }
-        }
+        DynamicImage::ImageLuma16(_)
+        | DynamicImage::ImageLumaA16(_)
+        | DynamicImage::ImageRgb16(_)
+        | DynamicImage::ImageRgba16(_) => of_16_bits(image.into_rgba16().into_raw().as_chunks().0),
+        _ => Texels::Rgba8(image.into_rgba8().into_raw().as_chunks().0.to_vec()),
+    };
+    Ok(Decoded {
+        width,
+        height,
+        texels,
+        remarks: Vec::new(),
     })
 }
 
-fn decode_exr(bytes: &[u8]) -> Result<Decoded, String> {
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgba_channels(
-            |size, _| (size.width(), vec![[0.0_f32; 4]; size.area()]),
-            |(width, texels), at, (r, g, b, a): (f32, f32, f32, f32)| {
-                texels[at.y() * *width + at.x()] = [r, g, b, a]
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(unreadable)?;
-    let size = image.layer_data.size;
-    let (_, texels) = image.layer_data.channel_data.pixels;
-    Ok(finite(size.width() as u32, size.height() as u32, texels))
+/// Texels of 16 bits a channel: bytes, if that loses nothing.
+fn of_16_bits(texels: &[[u16; 4]]) -> Texels {
+    let is_byte = |&code: &u16| code % 257 == 0;
+    if texels.as_flattened().iter().all(is_byte) {
+        let byte = |code: u16| (code / 257) as u8;
+        return Texels::Rgba8(texels.iter().map(|texel| texel.map(byte)).collect());
+    }
+    Texels::Rgba16(texels.to_vec())
 }
 
-fn finite(width: u32, height: u32, mut texels: Vec<[f32; 4]>) -> Decoded {
-    let mut replaced = 0;
+/// Makes numbers of texels of any bits.
+fn valid(
+    [width, height]: [u32; 2],
+    mut texels: Vec<[f32; 4]>,
+    largest: f32,
+    mut remarks: Vec<String>,
+) -> Decoded {
+    let (mut replaced, mut infinite) = (0, 0);
     for texel in &mut texels {
-        let is_valid = |value: f32| value.is_finite() && value >= 0.0;
-        if !texel.iter().all(|&value| is_valid(value)) {
-            replaced += 1;
-            *texel = texel.map(|value| if is_valid(value) { value } else { 0.0 });
+        if texel.iter().all(|&value| value.is_finite() && value >= 0.0) {
+            continue;
+        }
+        replaced += usize::from(!texel.iter().all(|&value| value >= 0.0));
+        infinite += usize::from(texel.contains(&f32::INFINITY));
+        // NaN is the smaller one of nothing.
+        *texel = texel.map(|value| value.max(0.0).min(largest));
+    }
+    for (count, problem, used) in [
+        (replaced, "NaN or negative", 0.0),
+        (infinite, "infinite", largest),
+    ] {
+        if count > 0 {
+            remarks.push(format!(
+                "{count} texels have {problem} values; {used} is used"
+            ));
         }
     }
     Decoded {
         width,
         height,
         texels: Texels::RgbaF32(texels),
-        replaced,
+        remarks,
     }
 }

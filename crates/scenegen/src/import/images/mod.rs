@@ -1,6 +1,8 @@
 //! Images: decoded within a budget, and never a reason to give a scene up.
 
 mod decode;
+mod openexr;
+mod radiance;
 mod requests;
 
 pub(super) use decode::decode_one;

@@ -52,16 +52,29 @@ impl RawMesh {
             }
         }
         if let Some(colors) = &mut self.colors {
-            let valid = |color: Vec4| color.is_finite() && color.min_element() >= 0.0;
-            let replaced = replace_non_finite(colors, valid, Vec4::ONE);
-            if replaced > 0 {
-                warnings.push(
-                    place,
-                    format!(
-                        "{replaced} vertex colours are NaN, infinite or negative; white is used"
-                    ),
-                );
-            }
+            clamp_colors(colors, place, warnings);
+        }
+    }
+}
+
+/// Forces colours into [0, 1], each component by itself; NaN becomes 1.
+fn clamp_colors(colors: &mut [Vec4], place: &str, warnings: &mut Warnings) {
+    let (mut unreadable, mut clamped) = (0, 0);
+    for color in colors {
+        if color.is_nan() {
+            unreadable += 1;
+            *color = Vec4::select(color.is_nan_mask(), Vec4::ONE, *color);
+        }
+        let inside = color.clamp(Vec4::ZERO, Vec4::ONE);
+        clamped += usize::from(inside != *color);
+        *color = inside;
+    }
+    for (count, message) in [
+        (unreadable, "vertex colours are NaN; 1 is used"),
+        (clamped, "vertex colours are outside of 0 to 1 and clamped"),
+    ] {
+        if count > 0 {
+            warnings.push(place, format!("{count} {message}"));
         }
     }
 }

@@ -4,6 +4,7 @@ use residual_render::texture::srgb_decoded;
 
 use crate::desc::{ColorInput, ImageDesc, MaterialDesc, SurfaceDesc, Texels, TextureDesc};
 use crate::import::warnings::Warnings;
+use crate::sixteen_bits;
 
 /// More than this is more than rounding of what adds up to 1.
 const LARGEST_SUM: f32 = 1.0 + 1e-5;
@@ -61,6 +62,10 @@ fn brightest(image: &ImageDesc) -> [f32; 3] {
         Texels::Rgba8(texels) => [0, 1, 2].map(|channel| {
             let code = texels.iter().map(|texel| texel[channel]).max().unwrap_or(0);
             srgb_decoded(f64::from(code) / 255.0) as f32
+        }),
+        Texels::Rgba16(texels) => [0, 1, 2].map(|channel| {
+            let code = texels.iter().map(|texel| texel[channel]).max().unwrap_or(0);
+            sixteen_bits::decoded(code)
         }),
         Texels::RgbaF32(texels) => [0, 1, 2].map(|channel| {
             let values = texels.iter().map(|texel| texel[channel]);

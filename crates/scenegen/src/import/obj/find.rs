@@ -1,17 +1,15 @@
 //! The files that OBJ and MTL files name.
 //!
-//! They come from systems that ignore case, separate folders by backslashes and encode names in their own way, and
-//! from machines whose folders are not here.
+//! They come from systems that encode names in their own way, and from machines whose folders are not here.
 
-use std::collections::HashMap;
 use std::ffi::OsString;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use encoding_rs::{BIG5, EUC_JP, EUC_KR, GB18030, SHIFT_JIS, WINDOWS_1251};
 
-use super::names::{comparable, readings};
+use super::names::readings;
 use super::text::legacy_bytes;
+use crate::import::folders::Folders;
 
 /// Folders in which exporters put images beside a model.
 const IMAGE_FOLDERS: [&str; 8] = [
@@ -33,8 +31,7 @@ const MAX_GUESSES: usize = 1000;
 
 /// Finds files, and remembers what is in the folders that it has looked at.
 pub(super) struct Finder {
-    /// By folder, its entries by name without case; the first in order of those that differ only in that.
-    listings: HashMap<PathBuf, HashMap<String, PathBuf>>,
+    folders: Folders,
     guesses_left: usize,
 }
 
@@ -42,7 +39,7 @@ impl Finder {
     /// One that knows no folder yet.
     pub(super) fn new() -> Self {
         Self {
-            listings: HashMap::new(),
+            folders: Folders::default(),
             guesses_left: MAX_GUESSES,
         }
     }
@@ -74,64 +71,9 @@ impl Finder {
         let names = encoded_names(name);
         folders.iter().find_map(|folder| {
             let mut names = names.iter();
-            names.find_map(|name| {
-                let path = folder.join(name);
-                if path.is_file() {
-                    return Some(path);
-                }
-                self.find_loosely(name.to_str()?, folder)
-            })
+            names.find_map(|name| self.folders.find(name, folder))
         })
     }
-
-    /// Backslashes are separators, and where nothing has the exact name, one that differs only in case, or in how accents
-    /// are composed, will do.
-    fn find_loosely(&mut self, name: &str, folder: &Path) -> Option<PathBuf> {
-        let name = name.replace('\\', "/");
-        let mut path = if name.starts_with('/') {
-            PathBuf::from("/")
-        } else {
-            folder.to_owned()
-        };
-        for part in name
-            .split('/')
-            .filter(|part| !part.is_empty() && *part != ".")
-        {
-            let next = path.join(part);
-            path = if part == ".." || next.exists() {
-                next
-            } else {
-                self.entry(&path, part)?
-            };
-        }
-        path.is_file().then_some(path)
-    }
-
-    fn entry(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
-        if !self.listings.contains_key(folder) {
-            self.listings.insert(folder.to_owned(), list(folder));
-        }
-        self.listings[folder].get(&comparable(name)).cloned()
-    }
-}
-
-/// What is in a folder; nothing where it cannot be read.
-fn list(folder: &Path) -> HashMap<String, PathBuf> {
-    let this = Path::new(".");
-    let entries = fs::read_dir(if folder.as_os_str().is_empty() {
-        this
-    } else {
-        folder
-    });
-    let mut paths: Vec<PathBuf> = entries
-        .into_iter()
-        .flatten()
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .collect();
-    // The first of equal names is inserted last.
-    paths.sort_by(|a, b| b.cmp(a));
-    let name = |path: &Path| comparable(&path.file_name().unwrap_or_default().to_string_lossy());
-    paths.into_iter().map(|path| (name(&path), path)).collect()
 }
 
 /// A name, and what its bytes may have meant if it comes from a file of a legacy code page.

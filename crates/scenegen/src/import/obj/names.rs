@@ -1,8 +1,7 @@
 //! Names of materials and files, as programs write them: in quotes, with comments behind them, or with a `#` in them.
 
-use unicode_normalization::UnicodeNormalization;
-
 use super::lines::comment_start;
+use crate::import::folders::comparable;
 
 /// The readings of what stands where a name does, the most literal first: without quotes, then without what may be a
 /// comment.
@@ -19,12 +18,7 @@ fn unquoted(name: &str) -> &str {
     inside('"').or_else(|| inside('\'')).unwrap_or(name).trim()
 }
 
-/// A name by which two that differ in case or in how accents are composed are the same.
-pub(super) fn comparable(name: &str) -> String {
-    name.to_lowercase().nfc().collect()
-}
-
-/// The same for names whose spaces may differ, too.
+/// A name by which two that differ in case, in how accents are composed or in their spaces are the same.
 pub(super) fn relaxed(name: &str) -> String {
     let words: Vec<&str> = name.split_whitespace().collect();
     comparable(&words.join(" "))

@@ -1,20 +1,15 @@
-//! Models far from the origin, as surveys and scans are: their vertices relative to a place among them, as 32 bits do
-//! not hold both where a model is and what it looks like.
+//! The vertices of a model relative to a place among them.
 
 use glam::{DVec3, Vec3};
 
-/// Models are far if their centre is so many times farther from the origin than from their own corners.
-const FAR: f64 = 100.0;
+use crate::import::origin;
 
-/// The place that positions are relative to, of whole coordinates and the origin for models that are not far; and the
-/// positions.
+/// The place that positions are relative to, and the positions.
 pub(super) fn relative(positions: &[DVec3]) -> (DVec3, Vec<Vec3>) {
     let finite = || positions.iter().filter(|position| position.is_finite());
     let low = finite().fold(DVec3::INFINITY, |low, &position| low.min(position));
     let high = finite().fold(DVec3::NEG_INFINITY, |high, &position| high.max(position));
-    let (center, half_extent) = (0.5 * (low + high), 0.5 * (high - low));
-    let is_far = center.is_finite() && center.abs().max_element() > FAR * half_extent.max_element();
-    let origin = if is_far { center.round() } else { DVec3::ZERO };
+    let origin = origin::choose([low, high]);
     let relative = positions
         .iter()
         .map(|&position| (position - origin).as_vec3());
@@ -33,7 +28,6 @@ mod tests {
         assert_eq!((origin, positions[1]), (DVec3::ZERO, near[1].as_vec3()));
         let far = near.map(|position| position + place);
         let (origin, positions) = relative(&far);
-        assert_eq!(origin, origin.as_vec3().as_dvec3(), "32 bits hold it");
         for (position, far) in positions.iter().zip(far).take(2) {
             assert!(
                 (origin + position.as_dvec3()).distance(far) < 1e-6,

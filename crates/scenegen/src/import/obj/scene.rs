@@ -142,11 +142,12 @@ fn build(
             &scene.meshes,
             scene.meshes.len() - 1,
             &part.name,
-            &DAffine3::from_translation(geometry.origin),
+            &DAffine3::IDENTITY,
             &place,
             warnings,
         ));
     }
+    scene.origin = geometry.origin;
     let message =
         "polygons cross themselves or have too many corners; triangles do not cover them exactly";
     meshes.approximate.warn(message, warnings);

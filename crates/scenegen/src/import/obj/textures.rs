@@ -145,6 +145,10 @@ fn looks(texels: &Texels) -> Looks {
             let texels = texels.iter();
             looks_of(texels.map(|texel| texel.map(|code| f64::from(code) / 255.0)))
         }
+        Texels::Rgba16(texels) => {
+            let texels = texels.iter();
+            looks_of(texels.map(|texel| texel.map(|code| f64::from(code) / 65535.0)))
+        }
         Texels::RgbaF32(texels) => looks_of(texels.iter().map(|texel| texel.map(f64::from))),
     }
 }

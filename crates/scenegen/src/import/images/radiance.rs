@@ -1,0 +1,482 @@
+//! Radiance pictures (`.hdr`, `.pic`): all eight orientations, both kinds of run lengths, colours as RGB or XYZ, and the
+//! factors of the header.
+//!
+//! The format is described in Radiance's `filefmts` and in Ward, "Real Pixels" (Graphics Gems II).
+
+/// A colour of the CIE as red, green and blue of Radiance's primaries, which everyone takes for those of displays; its
+/// rows add up to 1.
+const XYZ_TO_RGB: [[f64; 3]; 3] = [
+    [2.565_312_84, -1.166_849_62, -0.398_463_23],
+    [-1.022_108_17, 1.978_286_62, 0.043_821_56],
+    [0.074_724_38, -0.251_939_57, 1.177_215_19],
+];
+
+/// The longest header that is looked at.
+const MAX_HEADER: usize = 1 << 16;
+
+/// Scanlines of other lengths are not compressed channel by channel.
+const CHANNELWISE: std::ops::RangeInclusive<usize> = 8..=32767;
+
+/// What lies before the pixels.
+#[derive(Debug)]
+pub(super) struct Header {
+    /// Pixels per row.
+    pub(super) width: u32,
+    /// Rows.
+    pub(super) height: u32,
+    /// Scanlines are columns.
+    is_columns: bool,
+    /// Columns are stored from the right.
+    from_right: bool,
+    /// Rows are stored from the bottom.
+    from_bottom: bool,
+    is_xyz: bool,
+    /// What the pixels have been multiplied with.
+    factors: [f64; 3],
+    /// Of the first pixel.
+    first_byte: usize,
+    /// What the header says and is not heeded.
+    pub(super) remarks: Vec<String>,
+}
+
+/// Whether a file is a Radiance picture: programs write `#?RADIANCE`, `#?RGBE` and their own names.
+pub(super) fn is_radiance(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"#?")
+}
+
+/// Reads the header.
+pub(super) fn header(bytes: &[u8]) -> Result<Header, String> {
+    let mut header = Header {
+        width: 0,
+        height: 0,
+        is_columns: false,
+        from_right: false,
+        from_bottom: false,
+        is_xyz: false,
+        factors: [1.0; 3],
+        first_byte: 0,
+        remarks: Vec::new(),
+    };
+    let mut lines = Lines { bytes, at: 0 };
+    loop {
+        let line = lines.next()?;
+        if line.is_empty() {
+            break;
+        }
+        if let Some((variable, value)) = line.split_once('=').filter(|_| !line.starts_with('#')) {
+            header.set(variable.trim(), value.trim())?;
+        }
+    }
+    let resolution = lines.next()?;
+    header.set_resolution(&resolution).ok_or_else(|| {
+        format!("has no size and orientation such as -Y 512 +X 1024, but {resolution:?}")
+    })?;
+    header.first_byte = lines.at;
+    Ok(header)
+}
+
+struct Lines<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Lines<'_> {
+    /// The next line without its end.
+    fn next(&mut self) -> Result<String, String> {
+        let rest = &self.bytes[self.at..self.bytes.len().min(MAX_HEADER)];
+        let end = rest.iter().position(|&byte| byte == b'\n');
+        let end = end.ok_or("has a header that does not end")?;
+        self.at += end + 1;
+        let line = String::from_utf8_lossy(&rest[..end]);
+        Ok(line.trim_end_matches('\r').to_owned())
+    }
+}
+
+impl Header {
+    fn set(&mut self, variable: &str, value: &str) -> Result<(), String> {
+        let numbers = || -> Option<Vec<f64>> {
+            let numbers: Vec<f64> = value
+                .split_whitespace()
+                .map(|word| word.parse().ok())
+                .collect::<Option<_>>()?;
+            let is_factor = |number: &f64| *number > 0.0 && number.is_finite();
+            numbers.iter().all(is_factor).then_some(numbers)
+        };
+        match (variable, numbers().as_deref()) {
+            ("FORMAT", _) => {
+                self.is_xyz = match value {
+                    "32-bit_rle_rgbe" => false,
+                    "32-bit_rle_xyze" => true,
+                    _ => return Err(format!("has the pixel format {value:?}, which is unknown")),
+                }
+            }
+            // Each program that multiplies the pixels adds a line.
+            ("EXPOSURE", Some(&[exposure])) => {
+                self.factors = self.factors.map(|factor| factor * exposure);
+            }
+            ("COLORCORR", Some(&[red, green, blue])) => {
+                let [r, g, b] = self.factors;
+                self.factors = [r * red, g * green, b * blue];
+            }
+            ("EXPOSURE" | "COLORCORR", _) => {
+                self.remarks
+                    .push(format!("{variable} {value:?} is not positive; ignored"));
+            }
+            ("GAMMA", Some(&[1.0])) => {}
+            ("PRIMARIES", _) if is_near_display(value) => {}
+            ("GAMMA" | "PRIMARIES", _) => {
+                self.remarks
+                    .push(format!("{variable} {value:?} is ignored"));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// `-Y height +X width` and its seven relatives: the first is the axis along which scanlines follow one another. Y
+    /// grows upwards.
+    fn set_resolution(&mut self, line: &str) -> Option<()> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [first_axis, first_size, second_axis, second_size] = words[..] else {
+            return None;
+        };
+        let sizes = [first_size.parse().ok()?, second_size.parse().ok()?];
+        let (x, y) = match (first_axis.get(1..)?, second_axis.get(1..)?) {
+            ("Y", "X") => (1, 0),
+            ("X", "Y") => (0, 1),
+            _ => return None,
+        };
+        let is_negative = |axis: &str| match axis.as_bytes()[0] {
+            b'-' => Some(true),
+            b'+' => Some(false),
+            _ => None,
+        };
+        let signs = [is_negative(first_axis)?, is_negative(second_axis)?];
+        self.is_columns = x == 0;
+        self.from_right = signs[x];
+        self.from_bottom = !signs[y];
+        (self.width, self.height) = (sizes[x], sizes[y]);
+        Some(())
+    }
+
+    /// Index among the texels, whose first row is the top one, of an element of a scanline.
+    fn index(&self, scanline: usize, element: usize) -> usize {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let (x, y) = match self.is_columns {
+            true => (scanline, element),
+            false => (element, scanline),
+        };
+        let column = if self.from_right { width - 1 - x } else { x };
+        let row = if self.from_bottom { height - 1 - y } else { y };
+        row * width + column
+    }
+
+    /// The colour of a pixel.
+    fn color(&self, scales: &[f64; 256], [r, g, b, exponent]: [u8; 4]) -> [f32; 4] {
+        let stored = [r, g, b].map(|c| f64::from(c) * scales[usize::from(exponent)]);
+        let rgb = match self.is_xyz {
+            true => XYZ_TO_RGB.map(|row| (0..3).map(|k| row[k] * stored[k]).sum()),
+            false => stored,
+        };
+        let [r, g, b] = [0, 1, 2].map(|k| (rgb[k] / self.factors[k]) as f32);
+        [r, g, b, 1.0]
+    }
+}
+
+/// Whether primaries and white are those of displays, or of Radiance, which differ little; zeros say nothing.
+fn is_near_display(primaries: &str) -> bool {
+    const DISPLAY: [f64; 8] = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329];
+    let numbers = primaries.split_whitespace().map(|word| word.parse::<f64>());
+    let numbers: Vec<f64> = numbers.filter_map(Result::ok).collect();
+    let is_near = |(number, display): (&f64, f64)| (number - display).abs() < 0.025;
+    numbers.iter().all(|&number| number == 0.0)
+        || (numbers.len() == DISPLAY.len() && numbers.iter().zip(DISPLAY).all(is_near))
+}
+
+/// Reads the pixels behind the header. Colours beyond Rec. 709 have negative components.
+pub(super) fn texels(bytes: &[u8], header: &Header) -> Result<Vec<[f32; 4]>, String> {
+    let scales: [f64; 256] = std::array::from_fn(|exponent| match exponent {
+        0 => 0.0,
+        _ => 2.0_f64.powi(exponent as i32 - 136),
+    });
+    let (scanlines, length) = match header.is_columns {
+        true => (header.width as usize, header.height as usize),
+        false => (header.height as usize, header.width as usize),
+    };
+    let mut texels = vec![[0.0; 4]; scanlines * length];
+    let mut scanline = vec![[0; 4]; length];
+    let mut data = Data(&bytes[header.first_byte..]);
+    for k in 0..scanlines {
+        data.read(&mut scanline)
+            .ok_or_else(|| format!("is damaged or ends early, in scanline {k} of {scanlines}"))?;
+        for (element, &pixel) in scanline.iter().enumerate() {
+            texels[header.index(k, element)] = header.color(&scales, pixel);
+        }
+    }
+    Ok(texels)
+}
+
+/// What is left of the pixels.
+struct Data<'a>(&'a [u8]);
+
+impl Data<'_> {
+    fn byte(&mut self) -> Option<u8> {
+        let (&first, rest) = self.0.split_first()?;
+        self.0 = rest;
+        Some(first)
+    }
+
+    fn pixel(&mut self) -> Option<[u8; 4]> {
+        let (&first, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(first)
+    }
+
+    fn read(&mut self, scanline: &mut [[u8; 4]]) -> Option<()> {
+        let length = scanline.len();
+        let begins_with_length = matches!(self.0, [2, 2, high, low, ..]
+            if usize::from(*high) << 8 | usize::from(*low) == length);
+        if CHANNELWISE.contains(&length) && begins_with_length {
+            self.pixel()?;
+            (0..4).try_for_each(|channel| self.read_channel(scanline, channel))
+        } else {
+            self.read_pixels(scanline)
+        }
+    }
+
+    /// Runs of one channel.
+    fn read_channel(&mut self, scanline: &mut [[u8; 4]], channel: usize) -> Option<()> {
+        let mut at = 0;
+        while at < scanline.len() {
+            let code = usize::from(self.byte()?);
+            let (count, repeated) = match code {
+                0 => return None,
+                1..=128 => (code, None),
+                _ => (code - 128, Some(self.byte()?)),
+            };
+            for pixel in scanline.get_mut(at..at + count)? {
+                pixel[channel] = match repeated {
+                    Some(value) => value,
+                    None => self.byte()?,
+                };
+            }
+            at += count;
+        }
+        Some(())
+    }
+
+    /// Pixels one by one, or as runs of the one before: (1, 1, 1, count), whose counts are digits of a base of 256 where
+    /// several follow one another.
+    fn read_pixels(&mut self, scanline: &mut [[u8; 4]]) -> Option<()> {
+        let (mut at, mut shift) = (0, 0);
+        while at < scanline.len() {
+            match self.pixel()? {
+                [1, 1, 1, count] => {
+                    let count = usize::from(count).checked_shl(shift)?;
+                    let before = *scanline.get(at.checked_sub(1)?)?;
+                    scanline.get_mut(at..at.checked_add(count)?)?.fill(before);
+                    at += count;
+                    // More digits than that are no count.
+                    shift = (shift + 8).min(32);
+                }
+                pixel => {
+                    scanline[at] = pixel;
+                    at += 1;
+                    shift = 0;
+                }
+            }
+        }
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decode(bytes: &[u8]) -> Result<(Header, Vec<[f32; 4]>), String> {
+        let header = header(bytes)?;
+        let texels = texels(bytes, &header)?;
+        Ok((header, texels))
+    }
+
+    /// A picture whose pixels have exponents that give whole numbers: their red byte.
+    fn picture(lines: &str, resolution: &str, reds: &[u8]) -> Vec<u8> {
+        let mut bytes = format!("#?RGBE\n{lines}\n{resolution}\n").into_bytes();
+        bytes.extend(reds.iter().flat_map(|&red| [red, 0, 0, 136]));
+        bytes
+    }
+
+    fn reds(bytes: &[u8]) -> Vec<f32> {
+        let (_, texels) = decode(bytes).unwrap();
+        texels.iter().map(|texel| texel[0]).collect()
+    }
+
+    #[test]
+    fn every_orientation_is_turned_upright() {
+        // 11 12 13
+        // 21 22 23
+        let upright = [11.0, 12.0, 13.0, 21.0, 22.0, 23.0];
+        for (resolution, stored) in [
+            ("-Y 2 +X 3", [11, 12, 13, 21, 22, 23]),
+            ("-Y 2 -X 3", [13, 12, 11, 23, 22, 21]),
+            ("+Y 2 -X 3", [23, 22, 21, 13, 12, 11]),
+            ("+Y 2 +X 3", [21, 22, 23, 11, 12, 13]),
+            ("+X 3 -Y 2", [11, 21, 12, 22, 13, 23]),
+            ("-X 3 -Y 2", [13, 23, 12, 22, 11, 21]),
+            ("+X 3 +Y 2", [21, 11, 22, 12, 23, 13]),
+            ("-X 3 +Y 2", [23, 13, 22, 12, 21, 11]),
+        ] {
+            let bytes = picture("FORMAT=32-bit_rle_rgbe\n", resolution, &stored);
+            let (header, _) = decode(&bytes).unwrap();
+            assert_eq!((header.width, header.height), (3, 2), "{resolution}");
+            assert_eq!(reds(&bytes), upright, "{resolution}");
+        }
+        for resolution in [
+            "",
+            "-Y 2",
+            "-Y 2 +Y 3",
+            "Y 2 X 3",
+            "-Y two +X 3",
+            "-Z 2 +X 3",
+            "é é é é",
+        ] {
+            let problem = decode(&picture("", resolution, &[0; 6])).unwrap_err();
+            assert!(problem.contains("orientation"), "{resolution}: {problem}");
+        }
+    }
+
+    #[test]
+    fn factors_of_the_header_are_divided_by() {
+        let with = |lines: &str| {
+            let (header, texels) = decode(&picture(lines, "-Y 1 +X 1", &[64])).unwrap();
+            (texels[0][0], header.remarks.join(""))
+        };
+        assert_eq!(with(""), (64.0, String::new()));
+        assert_eq!(with("EXPOSURE=4\n").0, 16.0);
+        assert_eq!(with("EXPOSURE= 4.0\r\nsomething\nEXPOSURE=0.5\n").0, 32.0);
+        assert_eq!(with("COLORCORR= 2 1 1\nEXPOSURE=2\n").0, 16.0);
+        for primaries in [
+            "0 0 0 0 0 0 0 0",
+            "0.640 0.330 0.290 0.600 0.150 0.060 0.333 0.333",
+        ] {
+            assert_eq!(with(&format!("PRIMARIES={primaries}\n")).1, "");
+        }
+        assert!(
+            with("PRIMARIES=0.708 0.292 0.17 0.797 0.131 0.046 0.3127 0.329\n")
+                .1
+                .contains("ignored")
+        );
+        assert_eq!(
+            with("# EXPOSURE=4\nVIEW= -vtl\nPIXASPECT=2\n"),
+            (64.0, String::new())
+        );
+        for odd in [
+            "EXPOSURE=0\n",
+            "EXPOSURE=-1\n",
+            "EXPOSURE=no\n",
+            "COLORCORR=1\n",
+            "GAMMA=2.2\n",
+        ] {
+            let (red, remarks) = with(odd);
+            assert!(
+                red == 64.0 && remarks.contains("ignored"),
+                "{odd}: {red} {remarks}"
+            );
+        }
+        assert!(decode(&picture("FORMAT=16-bit\n", "-Y 1 +X 1", &[64])).is_err());
+    }
+
+    #[test]
+    fn white_of_the_cie_is_white() {
+        let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 2\n".to_vec();
+        bytes.extend([128, 128, 128, 129, 0, 128, 0, 129]);
+        let (_, texels) = decode(&bytes).unwrap();
+        for channel in &texels[0] {
+            assert!((channel - 1.0).abs() < 1e-6, "{texels:?}");
+        }
+        // Luminance alone is a green that no display has.
+        assert!(texels[1][0] < 0.0 && texels[1][1] > 1.9);
+    }
+
+    #[test]
+    fn runs_of_both_kinds_are_read() {
+        let header = b"#?RADIANCE\n\n-Y 1 +X 10\n";
+        let [a, b] = [[7, 8, 9, 136], [5, 0, 1, 136]];
+        let pixels = |bytes: &[u8]| {
+            let bytes = [header, bytes].concat();
+            decode(&bytes)
+                .map(|(_, texels)| texels.iter().map(|texel| texel[0]).collect::<Vec<_>>())
+        };
+        let expected = [7.0, 7.0, 7.0, 7.0, 7.0, 7.0, 7.0, 5.0, 5.0, 5.0];
+        let flat: Vec<u8> = [[a; 7].as_flattened(), [b; 3].as_flattened()].concat();
+        assert_eq!(pixels(&flat).unwrap(), expected);
+        let old = [a, [1, 1, 1, 6], b, [1, 1, 1, 2]].concat();
+        assert_eq!(pixels(&old).unwrap(), expected);
+        let digits = [a, [1, 1, 1, 6], [1, 1, 1, 0], b, b, b].concat();
+        assert_eq!(pixels(&digits).unwrap(), expected);
+        let channel = |a: u8, b: u8| [128 + 7, a, 3, b, b, b];
+        let runs: Vec<u8> = (0..4).flat_map(|k| channel(a[k], b[k])).collect();
+        let channelwise = [&[2, 2, 0, 10], &runs[..]].concat();
+        assert_eq!(pixels(&channelwise).unwrap(), expected);
+        // Damage of any kind is an error.
+        for bytes in [&flat, &old, &digits, &channelwise] {
+            for length in 0..bytes.len() {
+                assert!(pixels(&bytes[..length]).is_err(), "{length}");
+            }
+        }
+        for bytes in [
+            [[1, 1, 1, 1]; 10].as_flattened(),
+            [a, [1, 1, 1, 10]].as_flattened(),
+            [
+                a,
+                [1, 1, 1, 0],
+                [1, 1, 1, 0],
+                [1, 1, 1, 0],
+                [1, 1, 1, 0],
+                [1, 1, 1, 255],
+                [1, 1, 1, 255],
+                [1, 1, 1, 255],
+            ]
+            .as_flattened(),
+            &[2, 2, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0],
+            &[
+                2,
+                2,
+                0,
+                10,
+                128 + 11,
+                1,
+                128 + 10,
+                1,
+                128 + 10,
+                1,
+                128 + 10,
+                1,
+            ],
+        ] {
+            assert!(pixels(bytes).is_err(), "{bytes:?}");
+        }
+    }
+
+    #[test]
+    fn pictures_of_another_encoder_have_its_values() {
+        let (width, height) = (37, 5);
+        let mut state = 1_u32;
+        let mut number = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            // Few values, so that there are runs.
+            (state >> 28) as f32 * 0.37 * f32::powi(2.0, (state >> 24 & 7) as i32 - 4)
+        };
+        let pixels: Vec<_> = (0..width * height)
+            .map(|_| image::Rgb([number(), number(), number()]))
+            .collect();
+        let mut bytes = Vec::new();
+        image::codecs::hdr::HdrEncoder::new(&mut bytes)
+            .encode(&pixels, width, height)
+            .unwrap();
+        let (_, texels) = decode(&bytes).unwrap();
+        let expected = image::load_from_memory(&bytes).unwrap().into_rgba32f();
+        assert_eq!(texels.as_flattened(), expected.into_raw());
+    }
+}
