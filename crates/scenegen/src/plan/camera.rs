@@ -43,18 +43,36 @@ impl Bounds {
 }
 
 const FRAMING_FOV: f32 = 0.7;
+/// The part of the image's width or height that the scene fills.
+const FRAMING_PART: f32 = 0.92;
 
-/// A camera from the front, somewhat above and to the right, that sees the whole scene.
+/// A camera from the front, somewhat above and to the right, whose image the scene's box fills.
 fn framing(bounds: &Bounds, aspect: f32) -> CameraDesc {
     let (centre, radius) = bounds.sphere();
     let dir = Vec3::new(-0.27, -0.32, -0.91).normalize();
-    // The narrower of the two fields of view has to hold the sphere.
-    let half = (FRAMING_FOV * 0.5).tan() * aspect.min(1.0);
-    let distance = radius / half.atan().sin();
+    let rotation = look(dir, Vec3::Y);
+    let tan = (FRAMING_FOV * 0.5).tan();
+    let half = match bounds.lo.cmpgt(bounds.hi).any() {
+        true => Vec3::ONE,
+        false => bounds.hi * 0.5 - bounds.lo * 0.5,
+    };
+    let sides = [-1.0, 1.0];
+    let corners = sides.into_iter().flat_map(|x| {
+        sides
+            .into_iter()
+            .flat_map(move |y| sides.map(|z| half * Vec3::new(x, y, z)))
+    });
+    // Each corner says how far away the camera has to be to see it.
+    let distance = corners.map(|corner| {
+        let seen = rotation.inverse() * corner;
+        let across = (seen.x.abs() / aspect).max(seen.y.abs());
+        across / (tan * FRAMING_PART) + seen.z
+    });
+    let distance = distance.fold(radius, f32::max);
     CameraDesc {
         name: "framing".to_owned(),
         position: centre - dir * distance,
-        rotation: look(dir, Vec3::Y),
+        rotation,
         projection: Projection::Perspective { yfov: FRAMING_FOV },
         frame_aspect: None,
         clip: None,
@@ -174,4 +192,57 @@ pub(super) fn choose(
         forward,
     });
     Ok((kind, camera.name, camera.clip))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the corners of a box are in the image, from −1 to 1 across and up.
+    fn corners(camera: &CameraDesc, bounds: &Bounds, aspect: f32) -> Vec<[f32; 2]> {
+        let tan = (FRAMING_FOV * 0.5).tan();
+        let corner = |k: usize| {
+            let pick = |bit: usize, axis: usize| match k >> bit & 1 {
+                0 => bounds.lo[axis],
+                _ => bounds.hi[axis],
+            };
+            let place = Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2));
+            let seen = camera.rotation.inverse() * (place - camera.position);
+            assert!(seen.z < 0.0, "before the camera");
+            [seen.x / -seen.z / tan / aspect, seen.y / -seen.z / tan]
+        };
+        (0..8).map(corner).collect()
+    }
+
+    #[test]
+    fn the_default_camera_sees_all_and_the_scene_fills_its_image() {
+        let boxes = [
+            [1.0; 3],
+            [10.0, 0.1, 1.0],
+            [0.1, 7.0, 0.1],
+            [1.0, 1e-3, 1.0],
+            [1e-4, 2e-4, 1e-4],
+        ];
+        for half in boxes.map(Vec3::from) {
+            for aspect in [0.5, 1.0, 16.0 / 9.0] {
+                let centre = Vec3::new(3.0, -2.0, 5.0);
+                let bounds = Bounds {
+                    lo: centre - half,
+                    hi: centre + half,
+                };
+                let camera = framing(&bounds, aspect);
+                let corners = corners(&camera, &bounds, aspect);
+                let largest = corners
+                    .as_flattened()
+                    .iter()
+                    .fold(0.0, |a: f32, b| a.max(b.abs()));
+                assert!(
+                    (largest / FRAMING_PART - 1.0).abs() < 0.02,
+                    "{half} {aspect}: {largest}"
+                );
+            }
+        }
+        let nothing = framing(&Bounds::EMPTY, 1.0);
+        assert!(nothing.position.is_finite());
+    }
 }
