@@ -45,10 +45,10 @@ impl SceneDesc {
     }
 
     /// Nothing in the scene is a lamp: there are no lights and no environment, and what glows is no brighter than white paper and
-    /// not most of all surfaces, as the displays of a model are.
+    /// a small part of all surfaces, as the displays of a model are.
     pub fn is_unlit(&self) -> bool {
         /// Part of all surfaces up to which glowing details are details.
-        const DETAILS: f64 = 0.5;
+        const DETAILS: f64 = 0.25;
         if !self.lights.is_empty() || self.environment.is_some() {
             return false;
         }
