@@ -10,6 +10,7 @@ mod gpu;
 mod inspect;
 #[cfg(target_os = "linux")]
 mod interrupt;
+mod looks;
 mod outputs;
 mod render;
 mod tiers;
