@@ -103,6 +103,14 @@ fn an_adapter_can_be_chosen() {
     assert!(folder.path().join("a.png").exists());
 }
 
+#[test]
+fn gpus_take_as_many_samples_of_every_pixel() {
+    let folder = workplace();
+    let args = ["--device", "wgpu", "--adaptive", "-o", "a.png"];
+    fails(&render(&folder, &args), &["--adaptive", "--device cpu"]);
+    assert!(!folder.path().join("a.png").exists());
+}
+
 /// Whether there is an adapter or not: what a GPU runs is made for the scene.
 #[test]
 fn gpus_do_not_interpret() {
