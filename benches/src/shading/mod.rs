@@ -73,6 +73,7 @@ pub fn plan() -> Plan {
         }],
         camera_name: "camera".to_owned(),
         diagonal: 6.0,
+        depth: 6.0,
         warnings: Vec::new(),
         dismissed: Vec::new(),
     }

@@ -47,7 +47,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
     /// How far occluders count for ambient occlusion, and where the depth view turns black, in units of the scene
-    /// [default: a tenth of the scene's diagonal, and all of it]
+    /// [default: a tenth of the scene's diagonal, and the farthest corner of its box]
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = distance)]
     pub reach: Option<f32>,
     /// Threads; 0 is one for each processor

@@ -8,7 +8,7 @@ use residual_render::scene_data::SceneData;
 use super::camera_choice::CameraChoice;
 use super::error::PlanError;
 use super::options::PlanOptions;
-use crate::desc::{CameraDesc, ClipDistances, Projection, SceneDesc, Warning, WarningKind};
+use crate::desc::{CameraDesc, Projection, SceneDesc, Warning, WarningKind};
 
 /// Bounds of the scene in world space.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +39,16 @@ impl Bounds {
             self.lo * 0.5 + self.hi * 0.5,
             half.length().clamp(1e-6, 1e30),
         )
+    }
+
+    /// Nothing in the box is farther away from a place than this.
+    pub(super) fn farthest(&self, from: Vec3) -> f32 {
+        let (centre, radius) = self.sphere();
+        let corner = (from - centre).abs() + (self.hi * 0.5 - self.lo * 0.5);
+        match corner.is_finite() {
+            true => corner.length(),
+            false => (from - centre).length() + radius,
+        }
     }
 }
 
@@ -109,14 +119,14 @@ fn named<'a>(scene: &'a SceneDesc, wanted: &str) -> Result<&'a CameraDesc, PlanE
     })
 }
 
-/// Chooses the camera and writes its buffer. It has a kind, a name, and clip distances that are not rendered.
+/// Chooses the camera and writes its buffer. Its clip distances are not rendered.
 pub(super) fn choose(
     scene: &SceneDesc,
     options: &PlanOptions,
     bounds: &Bounds,
     data: &mut SceneData,
     warnings: &mut Vec<Warning>,
-) -> Result<(CameraNode, String, Option<ClipDistances>), PlanError> {
+) -> Result<(CameraNode, CameraDesc), PlanError> {
     let aspect = options.size[0] as f32 / options.size[1] as f32;
     let default = || {
         scene
@@ -191,7 +201,7 @@ pub(super) fn choose(
         frame_height,
         forward,
     });
-    Ok((kind, camera.name, camera.clip))
+    Ok((kind, camera))
 }
 
 #[cfg(test)]

@@ -74,10 +74,13 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         });
         return Ok(plan);
     }
-    let (camera, camera_name, clip) =
+    let (camera, chosen) =
         camera::choose(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
     let mut dismissed = [&scene.dismissed[..], &materials.dismissed].concat();
-    match clip.map(|clip| clip_distances::look(clip, &camera, &camera_name, &data)) {
+    match chosen
+        .clip
+        .map(|clip| clip_distances::look(clip, &camera, &chosen.name, &data))
+    {
         Some(Clipping::Something(warning)) => warnings.push(warning),
         Some(Clipping::Nothing(reason)) => dismissed.push(reason),
         None => {}
@@ -101,7 +104,8 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         materials: materials.uses,
         objects: geometry.objects,
         lights: lights.uses,
-        camera_name,
+        depth: geometry.bounds.farthest(chosen.position),
+        camera_name: chosen.name,
         diagonal: 2.0 * geometry.bounds.sphere().1,
         warnings,
         dismissed,

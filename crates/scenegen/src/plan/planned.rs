@@ -35,6 +35,8 @@ pub struct Plan {
     pub camera_name: String,
     /// Length of the diagonal of the box around everything.
     pub diagonal: f32,
+    /// Distance from the eye to the farthest corner of that box.
+    pub depth: f32,
     /// What was changed or left out.
     pub warnings: Vec<Warning>,
     /// What the scene has and the image does not need.
@@ -55,7 +57,7 @@ impl Plan {
     pub fn default_reach(&self) -> f32 {
         match self.structure.tracer {
             TracerNode::AmbientOcclusion => 0.1 * self.diagonal,
-            TracerNode::Path(_) | TracerNode::Debug(_) => self.diagonal,
+            TracerNode::Path(_) | TracerNode::Debug(_) => self.depth,
         }
     }
 }
