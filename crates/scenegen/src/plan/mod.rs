@@ -10,6 +10,7 @@ mod camera;
 mod camera_choice;
 mod clip_distances;
 mod closed;
+mod coincident;
 mod error;
 mod explain;
 mod geometry;
@@ -37,7 +38,7 @@ pub use explain::{BindingTimes, Decision};
 pub use options::{Binding, CullingRule, LightPicks, PlanOptions};
 pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
 
-use crate::desc::{EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
+use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
 
 /// Plans a scene.
 ///
@@ -50,6 +51,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
 
     let materials = materials::plan_materials(scene, options, &mut images, &mut warnings);
     let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
+    let hidden = coincident::hide(&mut data);
     // Only paths need lights.
     let lights = match options.tracer {
         TracerNode::Path(_) => lights::plan_lights(
@@ -77,6 +79,13 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let (camera, chosen) =
         camera::choose(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
     let mut dismissed = [&scene.dismissed[..], &materials.dismissed].concat();
+    if hidden > 0 {
+        dismissed.push(Dismissed {
+            effect: None,
+            place: "meshes".to_owned(),
+            reason: format!("{hidden} triangles lie exactly on others, which hide them"),
+        });
+    }
     match chosen
         .clip
         .map(|clip| clip_distances::look(clip, &camera, &chosen.name, &data))
