@@ -27,7 +27,7 @@ pub fn read_scene(path: &Path, environment: Option<PathBuf>) -> Result<SceneDesc
         path,
         &ImportOptions {
             environment,
-            strict: false,
+            ..ImportOptions::default()
         },
     )
 }

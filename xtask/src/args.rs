@@ -77,6 +77,9 @@ pub(crate) struct SceneArgs {
     /// Add a checkered ground below the scene
     #[arg(long)]
     pub(crate) ground: bool,
+    /// Show this set of a glTF file's materials (KHR_materials_variants)
+    #[arg(long, value_name = "NAME")]
+    pub(crate) variant: Option<String>,
     /// Fail where the scene cannot be rendered faithfully, instead of warning
     #[arg(long)]
     pub(crate) strict: bool,

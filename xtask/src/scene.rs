@@ -38,6 +38,7 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
         &args.scene,
         &ImportOptions {
             environment,
+            variant: args.variant.clone(),
             strict: args.strict,
         },
     )?;

@@ -227,6 +227,9 @@ pub enum SurfaceDesc {
         /// Squares from 0 to 1, along u and v.
         squares: [f32; 2],
     },
+    /// KHR_materials_unlit: reflects nothing. What it emits is tinted by `COLOR_0`, is seen where rays meet it, and is no
+    /// light that others are lit by on purpose.
+    Unlit,
     /// OBJ `illum` 4, 6, 7, 9 or a coloured `Tf`: a smooth dielectric.
     Dielectric {
         /// Index of refraction.

@@ -64,7 +64,8 @@ macro_rules! surface_inputs {
                 odd,
                 squares: _,
             } => vec![("even", Color(even)), ("odd", Color(odd))],
-            SurfaceDesc::Dielectric {
+            SurfaceDesc::Unlit
+            | SurfaceDesc::Dielectric {
                 ior: _,
                 transmittance: _,
             } => Vec::new(),

@@ -118,7 +118,7 @@ impl SceneDesc {
                     surface.ior.is_finite() && (surface.ior == 0.0 || surface.ior >= 1.0);
                 require(is_valid, || place("ior"), "is neither 0 nor at least 1")?;
             }
-            SurfaceDesc::Phong(_) | SurfaceDesc::Mirror { .. } => {}
+            SurfaceDesc::Phong(_) | SurfaceDesc::Mirror { .. } | SurfaceDesc::Unlit => {}
             SurfaceDesc::Checkerboard { squares, .. } => require(
                 squares.iter().all(|count| count.is_finite()),
                 || place("squares"),

@@ -16,7 +16,7 @@ fn options(path: &Path) -> ImportOptions {
     };
     ImportOptions {
         environment: Some(environment),
-        strict: false,
+        ..ImportOptions::default()
     }
 }
 

@@ -25,7 +25,7 @@ fn under(path: &Path) -> SceneDesc {
     };
     let options = ImportOptions {
         environment: Some(environment),
-        strict: false,
+        ..ImportOptions::default()
     };
     Gltf::square().import_with(&options).unwrap()
 }

@@ -197,11 +197,7 @@ fn extensions_that_are_not_rendered_are_named_with_their_material() {
         scene.warnings
     );
 
-    let gltf = square_with(json!({ "name": "flat", "extensions": { "KHR_materials_unlit": {} } }));
-    let scene = gltf.import().unwrap();
-    assert!(warns(&scene, "materials/0 \"flat\"", "KHR_materials_unlit"));
-    let flat = surface(&scene.materials[0]);
-    assert_eq!((flat.metallic.factor, flat.specular.factor), (0.0, 0.0));
+    let gltf = square_with(json!({ "extensions": { "ACME_glitter": {} } }));
     match gltf.import_with(&ImportOptions {
         strict: true,
         ..ImportOptions::default()
@@ -212,12 +208,155 @@ fn extensions_that_are_not_rendered_are_named_with_their_material() {
 }
 
 #[test]
-fn required_extensions_that_we_lack_are_named() {
-    for extension in [
-        "KHR_draco_mesh_compression",
-        "KHR_materials_pbrSpecularGlossiness",
-        "ACME_x",
+fn unlit_materials_emit_their_base_colour() {
+    let scene = square_with(json!({
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [0.5, 0.25, 1, 0.75],
+            "baseColorTexture": { "index": 0 },
+            "metallicRoughnessTexture": { "index": 1 },
+        },
+        "normalTexture": { "index": 1 },
+        "emissiveFactor": [1, 1, 1],
+        "alphaMode": "BLEND",
+        "extensions": { "KHR_materials_unlit": {} },
+    }))
+    .import()
+    .unwrap();
+    let material = &scene.materials[0];
+    assert_eq!(material.surface, SurfaceDesc::Unlit);
+    assert_eq!(material.emission.factor, [0.5, 0.25, 1.0]);
+    assert_eq!(material.emission.texture.as_ref().unwrap().texture, 0);
+    assert_eq!(
+        (material.alpha_mode, material.alpha.factor),
+        (AlphaMode::Blend, 0.75)
+    );
+    assert!(material.normal_map.is_none() && scene.textures.len() == 1);
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn specular_and_glossiness_are_metallic_roughness_with_extensions() {
+    let extension = json!({ "KHR_materials_pbrSpecularGlossiness": {
+        "diffuseFactor": [0.5, 0.25, 0.125, 0.75],
+        "diffuseTexture": { "index": 1 },
+        "specularFactor": [0.75, 0.5, 0.25],
+        "glossinessFactor": 0.5,
+        "specularGlossinessTexture": { "index": 0, "texCoord": 1 },
+    } });
+    let mut gltf = square_with(json!({
+        "pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1], "metallicFactor": 1 },
+        "extensions": extension,
+    }));
+    // Whether or not the file says that it cannot do without.
+    for required in [json!([]), json!(["KHR_materials_pbrSpecularGlossiness"])] {
+        gltf.json["extensionsRequired"] = required;
+        let scene = gltf.import().unwrap();
+        let material = &scene.materials[0];
+        let surface = surface(material);
+        assert_eq!(surface.base_color.factor, [0.5, 0.25, 0.125]);
+        assert_eq!(material.alpha.factor, 0.75);
+        assert_eq!((surface.metallic.factor, surface.ior), (0.0, 0.0));
+        assert_eq!(surface.specular_color.factor, [0.75, 0.5, 0.25]);
+        let specular = surface.specular_color.texture.as_ref().unwrap();
+        let (roughness, channel) = surface.roughness.texture.as_ref().unwrap();
+        assert_eq!((specular.uv_set, roughness.uv_set), (1, 1));
+        let texels = |texture: usize| match &scene.images[scene.textures[texture].image].texels {
+            Texels::Rgba8(texels) => texels[0],
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(texels(specular.texture), [10, 20, 30, 40]);
+        // 1 − 0.5 · 40/255.
+        assert_eq!(
+            (
+                texels(roughness.texture)[*channel],
+                surface.roughness.factor
+            ),
+            (235, 1.0)
+        );
+        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    }
+    let plain = square_with(
+        json!({ "extensions": { "KHR_materials_pbrSpecularGlossiness": {
+        "glossinessFactor": 0.25 } } }),
+    );
+    let scene = plain.import().unwrap();
+    let surface = surface(&scene.materials[0]);
+    assert_eq!(
+        (surface.roughness.factor, surface.specular_color.factor),
+        (0.75, [1.0; 3])
+    );
+    assert!(surface.roughness.texture.is_none());
+}
+
+#[test]
+fn variants_are_shown_by_name() {
+    let mut gltf = square_with(json!({ "name": "own" }));
+    gltf.json["materials"] = json!([{ "name": "own" }, { "name": "red" }, { "name": "blue" }]);
+    gltf.json["extensions"] = json!({ "KHR_materials_variants": { "variants": [
+        { "name": "Red" }, { "name": "Deep Blue" }, { "name": "Other" },
+    ] } });
+    gltf.primitive()["extensions"] = json!({ "KHR_materials_variants": { "mappings": [
+        { "material": 1, "variants": [0] }, { "material": 2, "variants": [1] },
+    ] } });
+    let import = |variant: Option<&str>| {
+        gltf.import_with(&ImportOptions {
+            variant: variant.map(str::to_owned),
+            ..ImportOptions::default()
+        })
+    };
+    for (variant, expected) in [
+        (None, "own"),
+        (Some("Red"), "red"),
+        (Some("deep blue"), "blue"),
+        (Some("Other"), "own"),
     ] {
+        let scene = import(variant).unwrap();
+        let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+        assert_eq!(names, [expected]);
+        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    }
+    let scene = import(None).unwrap();
+    let says = |text: &str| scene.dismissed.iter().any(|d| d.reason.contains(text));
+    assert!(says("\"Deep Blue\""), "{:?}", scene.dismissed);
+    let message = import(Some("Green")).unwrap_err().to_string();
+    assert!(message.contains("no \"Green\", but \"Red\""), "{message}");
+}
+
+#[test]
+fn any_set_of_texture_coordinates_may_be_read() {
+    let mut gltf = square_with(json!({
+        "pbrMetallicRoughness": {
+            "baseColorTexture": { "index": 0, "texCoord": 3 },
+            "metallicRoughnessTexture": { "index": 0, "texCoord": 0 },
+        },
+        "emissiveFactor": [1, 1, 1],
+        "emissiveTexture": { "index": 0, "texCoord": 1 },
+    }));
+    gltf.attribute("TEXCOORD_3", "VEC2", F32, &f32_bytes(&[0.25; 8]), 4);
+    let scene = gltf.import().unwrap();
+    let material = &scene.materials[0];
+    let surface = surface(material);
+    let mesh = &scene.meshes[0];
+    let read = |uv_set: usize| mesh.uvs[uv_set].as_ref().unwrap()[0].x;
+    assert_eq!(
+        read(surface.base_color.texture.as_ref().unwrap().uv_set),
+        0.25
+    );
+    assert_eq!(
+        read(surface.roughness.texture.as_ref().unwrap().0.uv_set),
+        0.0
+    );
+    assert!(material.emission.texture.is_none());
+    assert!(
+        warns(&scene, "emissiveTexture", "third set"),
+        "{:?}",
+        scene.warnings
+    );
+}
+
+#[test]
+fn required_extensions_that_we_lack_are_named() {
+    for extension in ["KHR_draco_mesh_compression", "KHR_texture_basisu", "ACME_x"] {
         let mut gltf = Gltf::square();
         gltf.json["extensionsRequired"] = json!([extension]);
         gltf.refused(&[extension, "extensionsRequired"]);

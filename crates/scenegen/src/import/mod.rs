@@ -48,8 +48,13 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
         .to_string_lossy()
         .to_ascii_lowercase();
     let mut scene = match extension.as_str() {
-        "gltf" | "glb" => gltf::import(path, &mut warnings)?,
-        "obj" => obj::import(path, &mut warnings)?,
+        "gltf" | "glb" => gltf::import(path, options, &mut warnings)?,
+        "obj" => {
+            if options.variant.is_some() {
+                warnings.push("variant", "OBJ files have no variants; ignored");
+            }
+            obj::import(path, &mut warnings)?
+        }
         _ => {
             return Err(ImportError::UnknownFormat {
                 file: path.to_owned(),

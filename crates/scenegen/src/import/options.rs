@@ -7,6 +7,8 @@ use std::path::PathBuf;
 pub struct ImportOptions {
     /// Light from infinitely far away.
     pub environment: Option<EnvironmentOptions>,
+    /// The set of materials to show, by its name, of files that have several (KHR_materials_variants).
+    pub variant: Option<String>,
     /// Whether warnings are errors.
     pub strict: bool,
 }

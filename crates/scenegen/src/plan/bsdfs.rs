@@ -21,6 +21,7 @@ impl Builder<'_> {
                 let albedo = self.sources.checkerboard(even, odd, *squares);
                 self.diffuse(albedo)
             }
+            SurfaceDesc::Unlit => BsdfNode::Black,
             SurfaceDesc::Dielectric { ior, transmittance } => {
                 let tint = self.sources.constant_color(*transmittance);
                 self.dielectric(tint, *ior, AnyInterface::Solid)

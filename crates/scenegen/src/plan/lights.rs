@@ -16,7 +16,7 @@ use super::options::LightPicks;
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
 use crate::desc::{
-    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, Texels,
+    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, SurfaceDesc, Texels,
 };
 use crate::sixteen_bits;
 
@@ -138,6 +138,10 @@ impl PlannedLights {
             let Some(emission) = program.emission else {
                 continue;
             };
+            // Of these there may be a scene full, none brighter than white: rays find them well enough.
+            if scene.materials[material].surface == SurfaceDesc::Unlit {
+                continue;
+            }
             let SourceNode::Color(source) = &program.inputs[emission.radiance.0].source else {
                 unreachable!("emission is a colour")
             };

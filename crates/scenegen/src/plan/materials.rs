@@ -116,6 +116,7 @@ fn encloses_a_body(scene: &SceneDesc, material: usize) -> bool {
         SurfaceDesc::Phong(_)
         | SurfaceDesc::Mirror { .. }
         | SurfaceDesc::Checkerboard { .. }
+        | SurfaceDesc::Unlit
         | SurfaceDesc::Dielectric { .. } => false,
     };
     transmits(&scene.materials[material].surface)

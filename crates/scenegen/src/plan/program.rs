@@ -8,7 +8,7 @@ use residual_render::texture::Input;
 
 use super::opacity::Opacity;
 use super::sources::Sources;
-use crate::desc::{MaterialDesc, NormalMap, Warning};
+use crate::desc::{MaterialDesc, NormalMap, SurfaceDesc, Warning};
 use crate::effect::Effect;
 
 /// Builds the program of one material.
@@ -68,7 +68,10 @@ impl Builder<'_> {
     }
 
     fn emission(&mut self, desc: &MaterialDesc) -> Option<EmissionNode> {
-        let emission = self.sources.color(&desc.emission);
+        let emission = match desc.surface {
+            SurfaceDesc::Unlit => self.sources.tinted_color(&desc.emission),
+            _ => self.sources.color(&desc.emission),
+        };
         if is_black(&emission) {
             if desc.emission.factor != [0.0; 3] {
                 self.sources

@@ -9,9 +9,6 @@ use serde_json::Map;
 use crate::import::error::ImportError;
 use crate::import::warnings::Warnings;
 
-/// Another material model, older than the extensions of metallic-roughness.
-const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
-
 /// What becomes of an extension.
 enum Support {
     /// Its effect is imported.
@@ -35,8 +32,10 @@ impl Support {
             | "KHR_materials_emissive_strength"
             | "KHR_materials_ior"
             | "KHR_materials_specular"
+            | "KHR_materials_pbrSpecularGlossiness"
             | "KHR_materials_transmission"
             | "KHR_materials_unlit"
+            | "KHR_materials_variants"
             | "KHR_materials_volume"
             | "KHR_mesh_quantization"
             | "KHR_node_visibility"
@@ -50,9 +49,7 @@ impl Support {
             "KHR_materials_dispersion" => Self::MaterialSwitch("dispersion"),
             "KHR_materials_iridescence" => Self::MaterialSwitch("iridescenceFactor"),
             "KHR_materials_sheen" => Self::MaterialSwitch("sheenColorFactor"),
-            SPECULAR_GLOSSINESS | "KHR_texture_basisu" | "MSFT_texture_dds" => {
-                Self::ReportedWhereUsed
-            }
+            "KHR_texture_basisu" | "MSFT_texture_dds" => Self::ReportedWhereUsed,
             _ => Self::Unknown,
         }
     }
@@ -79,9 +76,6 @@ fn advice(extension: &str) -> &'static str {
     match extension {
         "EXT_meshopt_compression" | "KHR_meshopt_compression" | "KHR_draco_mesh_compression" => {
             "decompress it first, for example with `gltf-transform copy in.glb out.glb`"
-        }
-        SPECULAR_GLOSSINESS => {
-            "convert it first, for example with `gltf-transform metalrough in.glb out.glb`"
         }
         "KHR_texture_basisu" => "convert its textures to PNG, JPEG or WebP",
         _ => "export the file without it",
@@ -143,11 +137,10 @@ pub(super) fn warn_about_material(
             warnings.dismiss(None, place, reason);
             continue;
         }
-        let instead = match extension.as_str() {
-            SPECULAR_GLOSSINESS => "the metallic-roughness values are used",
-            _ => "rendered without it",
-        };
-        warnings.push(place, format!("{extension} is not supported; {instead}"));
+        warnings.push(
+            place,
+            format!("{extension} is not supported; rendered without it"),
+        );
     }
 }
 

@@ -12,7 +12,7 @@ use super::uri::{self, Uri};
 use crate::desc::ImageDesc;
 use crate::import::error::Fault;
 use crate::import::folders::Folders;
-use crate::import::images::{self, ImageRequest, ImageRole};
+use crate::import::images::{self, Derived, ImageRequest, ImageRole};
 use crate::import::warnings::Warnings;
 
 /// Images in use, still encoded.
@@ -20,8 +20,8 @@ pub(super) struct Images<'a> {
     document: &'a Document,
     folders: Folders,
     requests: Vec<ImageRequest<'a>>,
-    /// From indices in the file to those in the scene.
-    indices: BTreeMap<usize, usize>,
+    /// From indices in the file, for each way to read them, to those in the scene.
+    indices: BTreeMap<(usize, Derived), usize>,
 }
 
 impl<'a> Images<'a> {
@@ -38,7 +38,8 @@ impl<'a> Images<'a> {
     /// Says which images of the file are not in use.
     pub(super) fn dismiss_unused(&self, warnings: &mut Warnings) {
         for (index, image) in self.document.root.images.iter().enumerate() {
-            if !self.indices.contains_key(&index) {
+            let mut used = self.indices.keys();
+            if !used.any(|(used, _)| *used == index) {
                 let at = place("images", index, image.name.as_deref());
                 warnings.dismiss(None, at, "no material in use reads it");
             }
@@ -56,7 +57,8 @@ impl<'a> Images<'a> {
         let document = self.document;
         let image = get(&document.root.images, index, "images", user)?;
         let index = index.value();
-        if let Some(&known) = self.indices.get(&index) {
+        let key = (index, role.derived());
+        if let Some(&known) = self.indices.get(&key) {
             if role == ImageRole::Normals {
                 self.requests[known].role = role;
             }
@@ -96,7 +98,7 @@ impl<'a> Images<'a> {
             extension,
             role,
         });
-        self.indices.insert(index, self.requests.len() - 1);
+        self.indices.insert(key, self.requests.len() - 1);
         Ok(self.requests.len() - 1)
     }
 

@@ -3,11 +3,12 @@
 use gltf::json::Material;
 use gltf::json::extensions::material::Material as Extensions;
 use gltf::json::material::AlphaMode as JsonAlphaMode;
+use gltf::json::texture::Info;
 use gltf::json::validation::Checked;
 
 use super::members::Members;
 use super::{extensions, surface};
-use crate::desc::{AlphaMode, ColorInput, MaterialDesc, NormalMap, ScalarInput};
+use crate::desc::{AlphaMode, ColorInput, MaterialDesc, NormalMap, ScalarInput, SurfaceDesc};
 use crate::effect::Effect;
 use crate::import::error::Fault;
 
@@ -20,26 +21,63 @@ pub(super) fn read(
     let used = material.extensions.clone().unwrap_or_default();
     extensions::warn_about_material(&used.others, &members.place, members.warnings);
 
-    let pbr = &material.pbr_metallic_roughness;
-    let base_texture = members.texture("baseColorTexture", pbr.base_color_texture.as_ref())?;
-    let [red, green, blue, alpha] = pbr.base_color_factor.0;
-    let base_color = ColorInput {
-        factor: members.color("baseColorFactor", [red, green, blue], 0.0..=1.0, 1.0),
-        texture: base_texture.clone(),
+    // Files with both say the same in two ways, the second for readers who do not know the first.
+    let glossy = used.pbr_specular_glossiness.as_ref();
+    let base = match glossy {
+        Some(glossy) => Base {
+            name: "diffuse",
+            factor: glossy.diffuse_factor.0,
+            texture: glossy.diffuse_texture.as_ref(),
+        },
+        None => Base {
+            name: "baseColor",
+            factor: material.pbr_metallic_roughness.base_color_factor.0,
+            texture: material.pbr_metallic_roughness.base_color_texture.as_ref(),
+        },
+    };
+    let factor_name = format!("{}Factor", base.name);
+    let texture = members.texture(&format!("{}Texture", base.name), base.texture)?;
+    let [red, green, blue, alpha] = base.factor;
+    let color = ColorInput {
+        factor: members.color(&factor_name, [red, green, blue], 0.0..=1.0, 1.0),
+        texture: texture.clone(),
     };
     let alpha = ScalarInput {
-        factor: members.number("baseColorFactor", alpha, 0.0..=1.0, 1.0),
-        texture: base_texture.map(|texture| (texture, 3)),
+        factor: members.number(&factor_name, alpha, 0.0..=1.0, 1.0),
+        texture: texture.map(|texture| (texture, 3)),
+    };
+    let (surface, emission) = match (&used.unlit, glossy) {
+        (Some(_), _) => (SurfaceDesc::Unlit, color),
+        (None, Some(glossy)) => (
+            surface::specular_glossiness(glossy, color, members)?,
+            emission(material, &used, members)?,
+        ),
+        (None, None) => (
+            surface::read(material, &used, color, members)?,
+            emission(material, &used, members)?,
+        ),
     };
     Ok(MaterialDesc {
         name,
-        surface: surface::read(material, &used, base_color, members)?,
-        emission: emission(material, &used, members)?,
+        emission,
         alpha_mode: alpha_mode(material, members),
         alpha,
-        normal_map: normal_map(material, members)?,
+        normal_map: match surface {
+            // Nothing is lit from anywhere.
+            SurfaceDesc::Unlit => None,
+            _ => normal_map(material, members)?,
+        },
+        surface,
         double_sided: material.double_sided,
     })
+}
+
+/// The colour that both material models have, with its alpha.
+struct Base<'a> {
+    /// What its members begin with.
+    name: &'static str,
+    factor: [f32; 4],
+    texture: Option<&'a Info>,
 }
 
 fn emission(

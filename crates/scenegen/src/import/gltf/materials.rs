@@ -9,6 +9,7 @@ use super::lookup::{get, place};
 use super::material;
 use super::members::Members;
 use super::textures::Textures;
+use super::uv_sets::UvSets;
 use crate::desc::{ImageDesc, MaterialDesc, TextureDesc};
 use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
@@ -18,6 +19,8 @@ pub(super) struct Materials<'a> {
     document: &'a Document,
     textures: Textures<'a>,
     list: Vec<MaterialDesc>,
+    /// For each of them, the sets of texture coordinates that it reads.
+    uv_sets: Vec<UvSets>,
     /// From indices in the file, of which `None` is glTF's default material, to those in `list`.
     indices: BTreeMap<Option<usize>, usize>,
 }
@@ -29,6 +32,7 @@ impl<'a> Materials<'a> {
             document,
             textures: Textures::new(document),
             list: Vec::new(),
+            uv_sets: Vec::new(),
             indices: BTreeMap::new(),
         }
     }
@@ -44,24 +48,27 @@ impl<'a> Materials<'a> {
         self.textures.dismiss_unused(warnings);
     }
 
-    /// A material with its index in the scene; `None` is glTF's default material.
+    /// A material with its index in the scene, and the numbers of the texture coordinates that it reads; `None` is glTF's
+    /// default material.
     pub(super) fn get(
         &mut self,
         index: Option<Index<Material>>,
         user: &str,
         warnings: &mut Warnings,
-    ) -> Result<(usize, &MaterialDesc), Fault> {
+    ) -> Result<(usize, &MaterialDesc, [u32; 2]), Fault> {
         let key = index.map(|index| index.value());
         let in_scene = match self.indices.get(&key) {
             Some(&known) => known,
             None => {
-                let material = self.read(index, user, warnings)?;
+                let (material, uv_sets) = self.read(index, user, warnings)?;
                 self.list.push(material);
+                self.uv_sets.push(uv_sets);
                 self.indices.insert(key, self.list.len() - 1);
                 self.list.len() - 1
             }
         };
-        Ok((in_scene, &self.list[in_scene]))
+        let uv_sets = self.uv_sets[in_scene].numbers();
+        Ok((in_scene, &self.list[in_scene], uv_sets))
     }
 
     fn read(
@@ -69,7 +76,7 @@ impl<'a> Materials<'a> {
         index: Option<Index<Material>>,
         user: &str,
         warnings: &mut Warnings,
-    ) -> Result<MaterialDesc, Fault> {
+    ) -> Result<(MaterialDesc, UvSets), Fault> {
         let default = Material::default();
         let (material, place, name) = match index {
             Some(index) => {
@@ -86,10 +93,12 @@ impl<'a> Materials<'a> {
         };
         let mut members = Members {
             textures: &mut self.textures,
+            uv_sets: UvSets::default(),
             warnings,
             place,
         };
-        material::read(material, name, &mut members)
+        let material = material::read(material, name, &mut members)?;
+        Ok((material, members.uv_sets))
     }
 
     /// The materials, their textures, and the images decoded.

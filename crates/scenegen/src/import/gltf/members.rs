@@ -7,6 +7,7 @@ use gltf::json::texture::Info;
 
 use super::texture_reference::TextureReference;
 use super::textures::Textures;
+use super::uv_sets::UvSets;
 use crate::desc::TextureUse;
 use crate::import::error::Fault;
 use crate::import::images::ImageRole;
@@ -16,6 +17,8 @@ use crate::import::warnings::Warnings;
 pub(super) struct Members<'r, 'a> {
     /// Where textures are registered.
     pub(super) textures: &'r mut Textures<'a>,
+    /// The sets of texture coordinates that they read.
+    pub(super) uv_sets: UvSets,
     /// What is said about members that cannot be taken as they are.
     pub(super) warnings: &'r mut Warnings,
     /// The material's JSON path.
@@ -36,8 +39,27 @@ impl Members<'_, '_> {
     ) -> Result<Option<TextureUse>, Fault> {
         let Some(info) = info else { return Ok(None) };
         let at = format!("{}/{member}", self.place);
+        self.textures.add(
+            info.into(),
+            ImageRole::Factors,
+            &at,
+            &mut self.uv_sets,
+            self.warnings,
+        )
+    }
+
+    /// A texture whose alpha is glossiness, as one whose green is roughness: 1 − `factor` · alpha.
+    pub(super) fn roughness_texture(
+        &mut self,
+        member: &str,
+        info: Option<&Info>,
+        factor: f32,
+    ) -> Result<Option<TextureUse>, Fault> {
+        let Some(info) = info else { return Ok(None) };
+        let at = format!("{}/{member}", self.place);
+        let role = ImageRole::Glossiness { factor };
         self.textures
-            .add(info.into(), ImageRole::Factors, &at, self.warnings)
+            .add(info.into(), role, &at, &mut self.uv_sets, self.warnings)
     }
 
     /// The texture of a normal map, likewise.
@@ -48,8 +70,13 @@ impl Members<'_, '_> {
     ) -> Result<Option<TextureUse>, Fault> {
         let at = format!("{}/{member}", self.place);
         let reference = TextureReference::to_normals(texture, &at)?;
-        self.textures
-            .add(reference, ImageRole::Normals, &at, self.warnings)
+        self.textures.add(
+            reference,
+            ImageRole::Normals,
+            &at,
+            &mut self.uv_sets,
+            self.warnings,
+        )
     }
 
     /// A number forced into its range; `default` stands in for NaN, and the like, with a warning.

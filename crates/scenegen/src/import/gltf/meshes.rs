@@ -6,7 +6,7 @@ use super::accessors::Accessors;
 use super::document::Document;
 use super::lookup::{get, place};
 use super::materials::Materials;
-use super::primitives;
+use super::{primitives, variants};
 use crate::desc::MeshDesc;
 use crate::import::error::Fault;
 use crate::import::mesh;
@@ -15,6 +15,8 @@ use crate::import::warnings::Warnings;
 /// Meshes in use, in order of first use.
 pub(super) struct Meshes<'a> {
     document: &'a Document,
+    /// Index of the set of materials to show.
+    variant: Option<usize>,
     /// Those of the scene so far.
     pub(super) list: Vec<MeshDesc>,
     /// For each mesh of the file the indices in `list` of what it became, once read.
@@ -23,9 +25,10 @@ pub(super) struct Meshes<'a> {
 
 impl<'a> Meshes<'a> {
     /// None yet.
-    pub(super) fn new(document: &'a Document) -> Self {
+    pub(super) fn new(document: &'a Document, variant: Option<usize>) -> Self {
         Self {
             document,
+            variant,
             list: Vec::new(),
             indices: vec![None; document.root.meshes.len()],
         }
@@ -62,15 +65,17 @@ impl<'a> Meshes<'a> {
         let mut indices = Vec::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let at = format!("{mesh_place}/primitives/{i}");
-            let Some(raw) = primitives::read(primitive, accessors, &at, warnings)? else {
+            let Some(topology) = primitives::topology(primitive, &at, warnings)? else {
                 continue;
             };
+            let material = variants::material(primitive, self.variant);
+            let (material_index, material, uv_sets) = materials.get(material, &at, warnings)?;
+            let raw = primitives::read(primitive, topology, uv_sets, accessors, &at, warnings)?;
             let name = if mesh.primitives.len() > 1 {
                 format!("{mesh_name}/{i}")
             } else {
                 mesh_name.clone()
             };
-            let (material_index, material) = materials.get(primitive.material, &at, warnings)?;
             let budget = &mut accessors.budget;
             if let Some(mesh) = mesh::finish(raw, name, material, &at, budget, warnings)? {
                 self.list.push(MeshDesc {

@@ -32,6 +32,8 @@ mod texture_reference;
 mod textures;
 mod translations;
 mod uri;
+mod uv_sets;
+mod variants;
 
 pub(crate) use external_files::external_files;
 pub(super) use scene::import;

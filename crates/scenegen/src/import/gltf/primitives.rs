@@ -6,29 +6,28 @@ use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index};
 
 use super::accessors::Accessors;
-use super::extensions;
+use super::{extensions, variants};
 use crate::import::error::Fault;
 use crate::import::mesh::RawMesh;
 use crate::import::warnings::Warnings;
 
 /// How the corners of triangles follow one another.
 #[derive(Clone, Copy)]
-enum Topology {
+pub(super) enum Topology {
+    /// Three for each.
     List,
+    /// Each with the two before.
     Strip,
+    /// Each with the one before and the first.
     Fan,
 }
 
-/// Reads a primitive; `None`, after a warning, where it has nothing to render.
-pub(super) fn read(
+/// How a primitive's triangles are given; `None`, after a warning, where it has nothing to render.
+pub(super) fn topology(
     primitive: &Primitive,
-    accessors: &mut Accessors<'_>,
     at: &str,
     warnings: &mut Warnings,
-) -> Result<Option<RawMesh>, Fault> {
-    if let Some(used) = &primitive.extensions {
-        extensions::warn_about_others(&used.others, &[], at, warnings);
-    }
+) -> Result<Option<Topology>, Fault> {
     let topology = match primitive.mode {
         Checked::Valid(Mode::Triangles) => Topology::List,
         Checked::Valid(Mode::TriangleStrip) => Topology::Strip,
@@ -39,6 +38,27 @@ pub(super) fn read(
         }
         Checked::Invalid => return Err(Fault::new(format!("{at}/mode"), "is unknown")),
     };
+    let has_positions = primitive
+        .attributes
+        .contains_key(&Checked::Valid(Semantic::Positions));
+    if !has_positions {
+        warnings.push(at, "has no POSITION and is skipped");
+    }
+    Ok(has_positions.then_some(topology))
+}
+
+/// Reads a primitive with these sets of texture coordinates.
+pub(super) fn read(
+    primitive: &Primitive,
+    topology: Topology,
+    uv_sets: [u32; 2],
+    accessors: &mut Accessors<'_>,
+    at: &str,
+    warnings: &mut Warnings,
+) -> Result<RawMesh, Fault> {
+    if let Some(used) = &primitive.extensions {
+        extensions::warn_about_others(&used.others, &[variants::EXTENSION], at, warnings);
+    }
     if primitive
         .targets
         .as_ref()
@@ -50,10 +70,8 @@ pub(super) fn read(
         );
     }
     let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
-    let Some(positions) = attribute(Semantic::Positions) else {
-        warnings.push(at, "has no POSITION and is skipped");
-        return Ok(None);
-    };
+    let positions = attribute(Semantic::Positions)
+        .ok_or_else(|| Fault::new(format!("{at}/attributes"), "has no POSITION"))?;
 
     let mut reader = Attributes {
         accessors,
@@ -75,7 +93,8 @@ pub(super) fn read(
             .map(|index| reader.vectors(index, &format!("TEXCOORD_{set}"), Vec2::from_array))
             .transpose()
     };
-    let uvs = [uvs(0)?, uvs(1)?];
+    let [first, second] = uv_sets;
+    let uvs = [uvs(first)?, uvs(second)?];
     let colors = attribute(Semantic::Colors(0))
         .map(|index| reader.colors(index, warnings))
         .transpose()?;
@@ -100,14 +119,15 @@ pub(super) fn read(
     }
     accessors.budget.charge(corners.len() as u64, 12, at)?;
     let triangles = assemble(topology, &corners, at, warnings);
-    Ok(Some(RawMesh {
+    Ok(RawMesh {
         positions,
         normals,
         tangents,
         uvs,
+        uv_sets,
         colors,
         triangles,
-    }))
+    })
 }
 
 struct Attributes<'r, 'a> {

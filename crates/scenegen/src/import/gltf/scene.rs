@@ -10,25 +10,32 @@ use super::materials::Materials;
 use super::meshes::Meshes;
 use super::nodes::PlacedNode;
 use super::placements::Placement;
-use super::{cameras, instancing, lights, nodes, placements};
+use super::{cameras, instancing, lights, nodes, placements, variants};
 use crate::desc::{InstanceDesc, SceneDesc};
 use crate::import::error::{Fault, ImportError};
+use crate::import::options::ImportOptions;
 use crate::import::warnings::Warnings;
 
 /// Reads a `.gltf` or `.glb` file.
 pub(in crate::import) fn import(
     file: &Path,
+    options: &ImportOptions,
     warnings: &mut Warnings,
 ) -> Result<SceneDesc, ImportError> {
     let document = Document::open(file, warnings)?;
-    read(&document, warnings).map_err(|fault| fault.in_file(file))
+    read(&document, options, warnings).map_err(|fault| fault.in_file(file))
 }
 
-fn read(document: &Document, warnings: &mut Warnings) -> Result<SceneDesc, Fault> {
+fn read(
+    document: &Document,
+    options: &ImportOptions,
+    warnings: &mut Warnings,
+) -> Result<SceneDesc, Fault> {
+    let variant = variants::chosen(&document.root, options.variant.as_deref(), warnings)?;
     let mut reader = Reader {
         accessors: Accessors::new(document),
         materials: Materials::new(document),
-        meshes: Meshes::new(document),
+        meshes: Meshes::new(document, variant),
     };
     let mut scene = SceneDesc::default();
     let nodes = nodes::flatten(document, warnings)?;

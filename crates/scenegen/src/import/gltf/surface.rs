@@ -1,30 +1,77 @@
 //! How a glTF material scatters light: metallic-roughness with the extensions that we render.
 
 use gltf::json::Material;
-use gltf::json::extensions::material::{Ior, Material as Extensions, Volume};
+use gltf::json::extensions::material::{
+    Ior, Material as Extensions, PbrSpecularGlossiness, Volume,
+};
 
 use super::members::Members;
 use crate::desc::{ColorInput, MetallicRoughness, ScalarInput, SurfaceDesc};
 use crate::import::error::Fault;
 
+/// Of a texture's channels, the one that holds roughness: green.
+const ROUGHNESS_CHANNEL: usize = 1;
+
 /// The index of refraction where KHR_materials_ior gives none.
 const DEFAULT_IOR: f32 = 1.5;
 
-/// Reads the surface of a material, all but its base colour.
+/// Reads how a material of metallic-roughness scatters light, all but its base colour.
 pub(super) fn read(
     material: &Material,
     extensions: &Extensions,
     base_color: ColorInput,
     members: &mut Members<'_, '_>,
 ) -> Result<SurfaceDesc, Fault> {
-    let surface = match extensions.unlit {
-        Some(_) => {
-            members.warn("KHR_materials_unlit is rendered as a diffuse surface");
-            unlit(base_color)
-        }
-        None => metallic_roughness(material, extensions, base_color, members)?,
-    };
+    let surface = metallic_roughness(material, extensions, base_color, members)?;
     Ok(SurfaceDesc::MetallicRoughness(surface))
+}
+
+/// KHR_materials_pbrSpecularGlossiness, of which metallic-roughness with its extensions has all: a dielectric whose
+/// reflection at normal incidence is the specular colour.
+pub(super) fn specular_glossiness(
+    extension: &PbrSpecularGlossiness,
+    diffuse: ColorInput,
+    members: &mut Members<'_, '_>,
+) -> Result<SurfaceDesc, Fault> {
+    let glossiness = members.number(
+        "glossinessFactor",
+        extension.glossiness_factor.0,
+        0.0..=1.0,
+        1.0,
+    );
+    let texture = extension.specular_glossiness_texture.as_ref();
+    let specular_texture = members.texture("specularGlossinessTexture", texture)?;
+    let roughness_texture =
+        members.roughness_texture("specularGlossinessTexture", texture, glossiness)?;
+    let constant = |factor| ScalarInput {
+        factor,
+        texture: None,
+    };
+    Ok(SurfaceDesc::MetallicRoughness(MetallicRoughness {
+        base_color: diffuse,
+        metallic: constant(0.0),
+        roughness: match roughness_texture {
+            Some(texture) => ScalarInput {
+                factor: 1.0,
+                texture: Some((texture, ROUGHNESS_CHANNEL)),
+            },
+            None => constant(1.0 - glossiness),
+        },
+        // Fresnel 1, so that the colour alone says what is reflected.
+        ior: 0.0,
+        specular: constant(1.0),
+        specular_color: ColorInput {
+            factor: members.color(
+                "specularFactor",
+                extension.specular_factor.0,
+                0.0..=1.0,
+                1.0,
+            ),
+            texture: specular_texture,
+        },
+        transmission: constant(0.0),
+        solid: false,
+    }))
 }
 
 fn metallic_roughness(
@@ -67,7 +114,7 @@ fn metallic_roughness(
         },
         roughness: ScalarInput {
             factor: roughness,
-            texture: texture.map(|texture| (texture, 1)),
+            texture: texture.map(|texture| (texture, ROUGHNESS_CHANNEL)),
         },
         ior: ior(members, extensions.ior.as_ref()),
         specular: ScalarInput {
@@ -122,24 +169,4 @@ fn ior(members: &mut Members<'_, '_>, extension: Option<&Ior>) -> f32 {
         "ior {ior} is neither 0 nor at least 1; {DEFAULT_IOR} is used"
     ));
     DEFAULT_IOR
-}
-
-fn unlit(base_color: ColorInput) -> MetallicRoughness {
-    let constant = |factor| ScalarInput {
-        factor,
-        texture: None,
-    };
-    MetallicRoughness {
-        base_color,
-        metallic: constant(0.0),
-        roughness: constant(1.0),
-        ior: DEFAULT_IOR,
-        specular: constant(0.0),
-        specular_color: ColorInput {
-            factor: [0.0; 3],
-            texture: None,
-        },
-        transmission: constant(0.0),
-        solid: false,
-    }
 }

@@ -10,9 +10,10 @@ use super::document::Document;
 use super::images::Images;
 use super::lookup::{get, place};
 use super::texture_reference::TextureReference;
+use super::uv_sets::UvSets;
 use crate::desc::{Filter, ImageDesc, TextureDesc, TextureUse, UvTransform, Wrap};
 use crate::import::error::Fault;
-use crate::import::images::ImageRole;
+use crate::import::images::{Derived, ImageRole};
 use crate::import::warnings::Warnings;
 
 /// Textures in use, with their images.
@@ -20,8 +21,8 @@ pub(super) struct Textures<'a> {
     document: &'a Document,
     images: Images<'a>,
     list: Vec<TextureDesc>,
-    /// From indices in the file to those in `list`.
-    indices: BTreeMap<usize, usize>,
+    /// From indices in the file, for each way to read them, to those in `list`.
+    indices: BTreeMap<(usize, Derived), usize>,
 }
 
 impl<'a> Textures<'a> {
@@ -46,6 +47,7 @@ impl<'a> Textures<'a> {
         reference: TextureReference,
         role: ImageRole,
         at: &str,
+        uv_sets: &mut UvSets,
         warnings: &mut Warnings,
     ) -> Result<Option<TextureUse>, Fault> {
         let TextureReference {
@@ -57,22 +59,21 @@ impl<'a> Textures<'a> {
             warnings.push(at, "KHR_texture_transform is not finite and ignored");
             transform = None;
         }
-        if uv_set > 1 {
-            warnings.push(
-                at,
-                format!(
-                    "TEXCOORD_{uv_set} is not supported (0 and 1 are); the texture is left out"
-                ),
+        let Some(uv_set) = uv_sets.index_of(uv_set) else {
+            let message = format!(
+                "TEXCOORD_{uv_set} is the third set of coordinates that the material reads, and two are supported; \
+                 the texture is left out"
             );
+            warnings.push(at, message);
             return Ok(None);
-        }
+        };
         let Some(texture) = self.index_of(index, role, at, warnings)? else {
             return Ok(None);
         };
         const IDENTITY: UvTransform = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         Ok(Some(TextureUse {
             texture,
-            uv_set: uv_set as usize,
+            uv_set,
             transform: transform.filter(|transform| *transform != IDENTITY),
         }))
     }
@@ -96,7 +97,8 @@ impl<'a> Textures<'a> {
             return Ok(None);
         };
         let image = self.images.add(source, role, &at, warnings)?;
-        if let Some(&known) = self.indices.get(&index.value()) {
+        let key = (index.value(), role.derived());
+        if let Some(&known) = self.indices.get(&key) {
             return Ok(Some(known));
         }
         let default = Sampler::default();
@@ -110,7 +112,7 @@ impl<'a> Textures<'a> {
             wrap,
             filter,
         });
-        self.indices.insert(index.value(), self.list.len() - 1);
+        self.indices.insert(key, self.list.len() - 1);
         Ok(Some(self.list.len() - 1))
     }
 

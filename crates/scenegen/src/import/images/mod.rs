@@ -6,4 +6,4 @@ mod radiance;
 mod requests;
 
 pub(super) use decode::decode_one;
-pub(super) use requests::{ImageRequest, ImageRole, decode_all};
+pub(super) use requests::{Derived, ImageRequest, ImageRole, decode_all};

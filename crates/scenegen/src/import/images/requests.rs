@@ -24,18 +24,78 @@ pub(in crate::import) struct ImageRequest<'a> {
 }
 
 /// What the texels of an image stand for, and so what takes their place where they cannot be read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::import) enum ImageRole {
     /// Factors on a material's inputs.
     Factors,
     /// Normals in tangent space.
     Normals,
+    /// Glossiness in the alpha channel, of which roughness is made: 1 − factor · alpha, in all colours.
+    Glossiness {
+        /// In [0, 1].
+        factor: f32,
+    },
+}
+
+/// An image of its own that is made of a file's, which may be read in several ways.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::import) enum Derived {
+    /// The file's.
+    No,
+    /// Roughness made with a factor of these bits.
+    Roughness(u32),
 }
 
 impl ImageRole {
+    /// Which image of the scene it is.
+    pub(in crate::import) fn derived(self) -> Derived {
+        match self {
+            Self::Factors | Self::Normals => Derived::No,
+            Self::Glossiness { factor } => Derived::Roughness(factor.to_bits()),
+        }
+    }
+
+    /// Makes of decoded texels what the scene reads.
+    fn derive(self, texels: Texels) -> Texels {
+        let Self::Glossiness { factor } = self else {
+            return texels;
+        };
+        let roughness = |glossiness: f32| (1.0 - factor * glossiness).clamp(0.0, 1.0);
+        match texels {
+            Texels::Rgba8(texels) => {
+                let code = |alpha: u8| (255.0 * roughness(f32::from(alpha) / 255.0)).round() as u8;
+                let codes: [u8; 256] = std::array::from_fn(|alpha| code(alpha as u8));
+                let texel = |[.., alpha]: [u8; 4]| {
+                    let code = codes[usize::from(alpha)];
+                    [code, code, code, 255]
+                };
+                Texels::Rgba8(texels.into_iter().map(texel).collect())
+            }
+            Texels::Rgba16(texels) => {
+                let texel = |[.., alpha]: [u16; 4]| {
+                    let value = roughness(f32::from(alpha) / 65535.0);
+                    let code = (65535.0 * value).round() as u16;
+                    [code, code, code, u16::MAX]
+                };
+                Texels::Rgba16(texels.into_iter().map(texel).collect())
+            }
+            Texels::RgbaF32(texels) => {
+                let texel = |[.., alpha]: [f32; 4]| {
+                    let value = roughness(alpha);
+                    [value, value, value, 1.0]
+                };
+                Texels::RgbaF32(texels.into_iter().map(texel).collect())
+            }
+        }
+    }
+
     /// The texel that changes nothing.
     fn neutral_texel(self) -> [u8; 4] {
         match self {
+            Self::Glossiness { factor } => {
+                let code = (255.0 * (1.0 - factor)).round() as u8;
+                [code, code, code, 255]
+            }
             Self::Factors => [255; 4],
             Self::Normals => [128, 128, 255, 255],
         }
@@ -44,7 +104,7 @@ impl ImageRole {
     /// How messages call that texel.
     fn neutral_name(self) -> &'static str {
         match self {
-            Self::Factors => "white",
+            Self::Factors | Self::Glossiness { .. } => "white",
             Self::Normals => "no normal map",
         }
     }
@@ -83,7 +143,11 @@ pub(in crate::import) fn decode_all(
         .map(|(name, place, role, result)| match result {
             Ok(decoded) => {
                 decoded.warn(&place, warnings);
-                decoded.into_desc(name)
+                let image = decoded.into_desc(name);
+                ImageDesc {
+                    texels: role.derive(image.texels),
+                    ..image
+                }
             }
             Err(problem) => {
                 let neutral = role.neutral_name();

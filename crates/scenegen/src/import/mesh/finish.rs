@@ -23,7 +23,7 @@ pub(in crate::import) fn finish(
     budget: &mut Budget,
     warnings: &mut Warnings,
 ) -> Result<Option<MeshDesc>, Fault> {
-    missing_uvs::warn_about_missing_uvs(material, &raw.uvs, place, warnings);
+    missing_uvs::warn_about_missing_uvs(material, &raw.uvs, raw.uv_sets, place, warnings);
     raw.drop_non_finite(place, warnings);
     if raw.triangles.is_empty() {
         warnings.push(place, "has no triangles and is skipped");

@@ -16,6 +16,8 @@ pub(in crate::import) struct RawMesh {
     pub(in crate::import) tangents: Option<Vec<Vec4>>,
     /// Texture coordinates.
     pub(in crate::import) uvs: [Option<Vec<Vec2>>; 2],
+    /// The numbers of the two sets in the file.
+    pub(in crate::import) uv_sets: [u32; 2],
     /// Colours.
     pub(in crate::import) colors: Option<Vec<Vec4>>,
     /// Corners.

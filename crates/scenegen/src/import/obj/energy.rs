@@ -30,7 +30,9 @@ pub(super) fn conserve(
                 reflectance,
             } => ("Kd and Ks", vec![diffuse, reflectance]),
             SurfaceDesc::MetallicRoughness(surface) => ("Kd", vec![&mut surface.base_color]),
-            SurfaceDesc::Dielectric { .. } | SurfaceDesc::Checkerboard { .. } => continue,
+            SurfaceDesc::Dielectric { .. }
+            | SurfaceDesc::Checkerboard { .. }
+            | SurfaceDesc::Unlit => continue,
         };
         let bound = |color: &ColorInput, channel: usize| {
             let texture = color.texture.as_ref();

@@ -118,6 +118,7 @@ impl<'g> PartMeshes<'g> {
                     .collect(),
                 normals: has_normals.then(|| vertices.iter().map(normal).collect()),
                 tangents: None,
+                uv_sets: [0, 1],
                 uvs: [
                     has_uvs.then(|| {
                         vertices
