@@ -80,6 +80,9 @@ pub(crate) struct SceneArgs {
     /// Show this set of a glTF file's materials (KHR_materials_variants)
     #[arg(long, value_name = "NAME")]
     pub(crate) variant: Option<String>,
+    /// Show this moment of a glTF file's animations; without it, the pose in which the file stands
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
+    pub(crate) time_code: Option<f64>,
     /// Fail where the scene cannot be rendered faithfully, instead of warning
     #[arg(long)]
     pub(crate) strict: bool,
@@ -249,6 +252,17 @@ impl FromStr for Triple {
 
 fn finite(text: &str) -> Result<f32, String> {
     let number: f32 = text
+        .parse()
+        .map_err(|_| format!("{text:?} is not a number"))?;
+    if number.is_finite() {
+        Ok(number)
+    } else {
+        Err("expected a finite number".to_owned())
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let number: f64 = text
         .parse()
         .map_err(|_| format!("{text:?} is not a number"))?;
     if number.is_finite() {

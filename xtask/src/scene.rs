@@ -39,6 +39,7 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
         &ImportOptions {
             environment,
             variant: args.variant.clone(),
+            time_code: args.time_code,
             strict: args.strict,
         },
     )?;

@@ -53,6 +53,9 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
             if options.variant.is_some() {
                 warnings.push("variant", "OBJ files have no variants; ignored");
             }
+            if options.time_code.is_some() {
+                warnings.push("time code", "OBJ files have no animations; ignored");
+            }
             obj::import(path, &mut warnings)?
         }
         _ => {

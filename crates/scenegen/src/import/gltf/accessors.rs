@@ -74,8 +74,10 @@ impl<'a> Accessors<'a> {
         encoded: impl Fn(Encoding) -> Encoding,
     ) -> Result<Vec<[f32; N]>, Fault> {
         let expected = match N {
+            1 => Type::Scalar,
             2 => Type::Vec2,
             3 => Type::Vec3,
+            16 => Type::Mat4,
             _ => Type::Vec4,
         };
         let allowed = |component| match component {

@@ -94,12 +94,6 @@ pub(super) fn warn_about_root(root: &Root, warnings: &mut Warnings) {
             );
         }
     }
-    if !root.animations.is_empty() {
-        warnings.push(
-            "animations",
-            "not supported; the scene is shown as its nodes stand",
-        );
-    }
 }
 
 /// Extensions of materials and nodes, where the warning then names the material or node.

@@ -3,6 +3,7 @@
 use gltf::json::{Index, Mesh};
 
 use super::accessors::Accessors;
+use super::deform::Deformation;
 use super::document::Document;
 use super::lookup::{get, place};
 use super::materials::Materials;
@@ -19,8 +20,10 @@ pub(super) struct Meshes<'a> {
     variant: Option<usize>,
     /// Those of the scene so far.
     pub(super) list: Vec<MeshDesc>,
-    /// For each mesh of the file the indices in `list` of what it became, once read.
+    /// For each mesh of the file the indices in `list` of what it became, once read, where nothing deforms it.
     indices: Vec<Option<Vec<usize>>>,
+    /// Whether each mesh of the file is in the scene.
+    is_used: Vec<bool>,
 }
 
 impl<'a> Meshes<'a> {
@@ -31,13 +34,14 @@ impl<'a> Meshes<'a> {
             variant,
             list: Vec::new(),
             indices: vec![None; document.root.meshes.len()],
+            is_used: vec![false; document.root.meshes.len()],
         }
     }
 
     /// Says which meshes of the file are not in the scene.
     pub(super) fn dismiss_unused(&self, warnings: &mut Warnings) {
-        for (index, indices) in self.indices.iter().enumerate() {
-            if indices.is_none() {
+        for (index, &is_used) in self.is_used.iter().enumerate() {
+            if !is_used {
                 let mesh = &self.document.root.meshes[index];
                 let at = place("meshes", index, mesh.name.as_deref());
                 warnings.dismiss(None, at, "no node of the scene shows it");
@@ -49,6 +53,7 @@ impl<'a> Meshes<'a> {
     pub(super) fn indices_of(
         &mut self,
         index: Index<Mesh>,
+        deformation: &Deformation,
         user: &str,
         accessors: &mut Accessors<'_>,
         materials: &mut Materials<'_>,
@@ -56,7 +61,10 @@ impl<'a> Meshes<'a> {
     ) -> Result<Vec<usize>, Fault> {
         let mesh = get(&self.document.root.meshes, index, "meshes", user)?;
         let index = index.value();
-        if let Some(indices) = &self.indices[index] {
+        self.is_used[index] = true;
+        if let Some(indices) = &self.indices[index]
+            && deformation.is_none()
+        {
             return Ok(indices.clone());
         }
         let mesh_place = place("meshes", index, mesh.name.as_deref());
@@ -70,7 +78,8 @@ impl<'a> Meshes<'a> {
             };
             let material = variants::material(primitive, self.variant);
             let (material_index, material, uv_sets) = materials.get(material, &at, warnings)?;
-            let raw = primitives::read(primitive, topology, uv_sets, accessors, &at, warnings)?;
+            let mut raw = primitives::read(primitive, topology, uv_sets, accessors, &at, warnings)?;
+            deformation.apply(&mut raw, primitive, accessors, &at, warnings)?;
             let name = if mesh.primitives.len() > 1 {
                 format!("{mesh_name}/{i}")
             } else {
@@ -85,7 +94,9 @@ impl<'a> Meshes<'a> {
                 indices.push(self.list.len() - 1);
             }
         }
-        self.indices[index] = Some(indices.clone());
+        if deformation.is_none() {
+            self.indices[index] = Some(indices.clone());
+        }
         Ok(indices)
     }
 }

@@ -8,7 +8,9 @@
 //! ```
 
 mod accessors;
+mod animation;
 mod cameras;
+mod deform;
 mod document;
 mod elements;
 mod extensions;
@@ -27,6 +29,7 @@ mod placements;
 mod primitives;
 mod root;
 mod scene;
+mod skins;
 mod surface;
 mod texture_reference;
 mod textures;

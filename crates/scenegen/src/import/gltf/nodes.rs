@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::json::{Index, Node, Scene, Value};
 
+use super::animation::{Animated, Pose};
 use super::document::Document;
 use super::extensions;
 use super::lookup::{get, place};
@@ -21,6 +22,8 @@ const VISIBILITY: &str = "KHR_node_visibility";
 pub(super) struct PlacedNode<'a> {
     /// The node.
     pub(super) node: &'a Node,
+    /// Its index in the file.
+    pub(super) index: usize,
     /// Name for the scene.
     pub(super) name: String,
     /// JSON path.
@@ -47,6 +50,7 @@ enum Turn {
 /// which the specification forbids and exporters write, are placed below each.
 pub(super) fn flatten<'a>(
     document: &'a Document,
+    pose: &Pose,
     warnings: &mut Warnings,
 ) -> Result<Vec<PlacedNode<'a>>, Fault> {
     let root = &document.root;
@@ -90,8 +94,13 @@ pub(super) fn flatten<'a>(
         if !is_first {
             warnings.push(&*place, "is reached from several parents; shown below each");
         }
-        let mut local = local(node, &place, warnings);
-        if let Some(&translation) = document.long_translations.get(&index) {
+        let mut local = local(node, pose.get(&index), &place, warnings);
+        let is_moved = pose
+            .get(&index)
+            .is_some_and(|moved| moved.translation.is_some());
+        if let Some(&translation) = document.long_translations.get(&index)
+            && !is_moved
+        {
             local.translation = translation;
         }
         let world = parent * local;
@@ -111,6 +120,7 @@ pub(super) fn flatten<'a>(
         let name = node.name.clone().unwrap_or_else(|| format!("node {index}"));
         placed.push(PlacedNode {
             node,
+            index,
             name,
             place,
             world,
@@ -161,8 +171,14 @@ fn roots(document: &Document, warnings: &mut Warnings) -> Result<Vec<Index<Node>
         .collect())
 }
 
-fn local(node: &Node, at: &str, warnings: &mut Warnings) -> DAffine3 {
-    if let Some(matrix) = node.matrix {
+fn local(node: &Node, animated: Option<&Animated>, at: &str, warnings: &mut Warnings) -> DAffine3 {
+    let rest = Animated::default();
+    let animated = animated.unwrap_or(&rest);
+    let is_moved =
+        animated.translation.is_some() || animated.rotation.is_some() || animated.scale.is_some();
+    if is_moved && node.matrix.is_some() {
+        warnings.push(at, "is animated and has a matrix, which is ignored");
+    } else if let Some(matrix) = node.matrix {
         let matrix = DMat4::from_cols_array(&matrix.map(f64::from));
         if matrix.row(3) != glam::DVec4::W {
             warnings.push(at, "the matrix is not affine; its last row is ignored");
@@ -186,8 +202,10 @@ fn local(node: &Node, at: &str, warnings: &mut Warnings) -> DAffine3 {
         None => DQuat::IDENTITY,
     };
     DAffine3::from_scale_rotation_translation(
-        vector(node.scale, DVec3::ONE),
-        rotation,
-        vector(node.translation, DVec3::ZERO),
+        animated.scale.unwrap_or(vector(node.scale, DVec3::ONE)),
+        animated.rotation.unwrap_or(rotation),
+        animated
+            .translation
+            .unwrap_or(vector(node.translation, DVec3::ZERO)),
     )
 }

@@ -59,16 +59,6 @@ pub(super) fn read(
     if let Some(used) = &primitive.extensions {
         extensions::warn_about_others(&used.others, &[variants::EXTENSION], at, warnings);
     }
-    if primitive
-        .targets
-        .as_ref()
-        .is_some_and(|targets| !targets.is_empty())
-    {
-        warnings.push(
-            at,
-            "morph targets are not supported; shown in its base shape",
-        );
-    }
     let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
     let positions = attribute(Semantic::Positions)
         .ok_or_else(|| Fault::new(format!("{at}/attributes"), "has no POSITION"))?;

@@ -1,16 +1,21 @@
 //! A glTF file as a scene description: the pieces of this folder put together.
 
+use std::collections::HashMap;
 use std::path::Path;
+
+use glam::DAffine3;
 
 use gltf::json::{Index, Mesh, Node};
 
 use super::accessors::Accessors;
+use super::animation::Pose;
+use super::deform::Deformation;
 use super::document::Document;
 use super::materials::Materials;
 use super::meshes::Meshes;
 use super::nodes::PlacedNode;
 use super::placements::Placement;
-use super::{cameras, instancing, lights, nodes, placements, variants};
+use super::{animation, cameras, instancing, lights, nodes, placements, skins, variants};
 use crate::desc::{InstanceDesc, SceneDesc};
 use crate::import::error::{Fault, ImportError};
 use crate::import::options::ImportOptions;
@@ -33,12 +38,20 @@ fn read(
 ) -> Result<SceneDesc, Fault> {
     let variant = variants::chosen(&document.root, options.variant.as_deref(), warnings)?;
     let mut reader = Reader {
+        document,
         accessors: Accessors::new(document),
         materials: Materials::new(document),
         meshes: Meshes::new(document, variant),
     };
     let mut scene = SceneDesc::default();
-    let nodes = nodes::flatten(document, warnings)?;
+    let pose = animation::pose_at(
+        &document.root,
+        options.time_code,
+        &mut reader.accessors,
+        warnings,
+    )?;
+    let nodes = nodes::flatten(document, &pose, warnings)?;
+    let worlds = skins::worlds(&nodes);
     let mut placements = Vec::new();
     for (index, placed) in nodes.iter().enumerate() {
         if !placed.is_visible && shows_something(placed.node) {
@@ -47,7 +60,8 @@ fn read(
         if placed.is_visible
             && let Some(mesh) = placed.node.mesh
         {
-            reader.place(mesh, index, placed, &mut placements, warnings)?;
+            let deformation = reader.deformation(mesh, placed, &pose, &worlds, warnings)?;
+            reader.place(mesh, index, placed, &deformation, &mut placements, warnings)?;
         }
     }
     let meshes = &reader.meshes.list;
@@ -83,29 +97,62 @@ fn shows_something(node: &Node) -> bool {
 
 /// What nodes with meshes fill.
 struct Reader<'a> {
+    document: &'a Document,
     accessors: Accessors<'a>,
     materials: Materials<'a>,
     meshes: Meshes<'a>,
 }
 
 impl Reader<'_> {
+    /// How a node shows its mesh.
+    fn deformation(
+        &mut self,
+        mesh: Index<Mesh>,
+        placed: &PlacedNode<'_>,
+        pose: &Pose,
+        worlds: &HashMap<usize, DAffine3>,
+        warnings: &mut Warnings,
+    ) -> Result<Deformation, Fault> {
+        let document = self.document;
+        let animated = pose.get(&placed.index);
+        let animated = animated.and_then(|animated| animated.weights.clone());
+        let of_mesh = || {
+            let mesh = document.root.meshes.get(mesh.value())?;
+            mesh.weights.clone()
+        };
+        let weights = animated
+            .or_else(|| placed.node.weights.clone())
+            .or_else(of_mesh);
+        let skin = match placed.node.skin {
+            Some(skin) => skins::pose(
+                document,
+                skin,
+                worlds,
+                &placed.place,
+                &mut self.accessors,
+                warnings,
+            )?,
+            None => None,
+        };
+        Ok(Deformation {
+            weights: weights.unwrap_or_default(),
+            skin,
+        })
+    }
+
     /// Places a node's mesh, each of its primitives and copies.
     fn place(
         &mut self,
         mesh: Index<Mesh>,
         node: usize,
         placed: &PlacedNode<'_>,
+        deformation: &Deformation,
         placements: &mut Vec<Placement>,
         warnings: &mut Warnings,
     ) -> Result<(), Fault> {
-        if placed.node.skin.is_some() {
-            warnings.push(
-                &*placed.place,
-                "skins are not supported; shown in its rest pose at the node's place",
-            );
-        }
         let meshes = self.meshes.indices_of(
             mesh,
+            deformation,
             &placed.place,
             &mut self.accessors,
             &mut self.materials,
@@ -116,8 +163,13 @@ impl Reader<'_> {
         let count = meshes.len() as u64 * copies.len() as u64;
         let size = (size_of::<InstanceDesc>() + placed.name.len() + size_of::<Placement>()) as u64;
         self.accessors.budget.charge(count, size, &placed.place)?;
+        // Where its joints are, a skin carries its mesh: not where its node is.
+        let node_world = deformation
+            .skin
+            .as_ref()
+            .map_or(placed.world, |skin| skin.world);
         for copy in copies {
-            let world = placed.world * copy;
+            let world = node_world * copy;
             placements.extend(meshes.iter().map(|&mesh| Placement { mesh, node, world }));
         }
         Ok(())
