@@ -143,24 +143,33 @@ impl<'a> Accessors<'a> {
                 ));
             }
         }
-        let count = usize::try_from(accessor.count.0)
-            .map_err(|_| Fault::new(here.as_str(), "count is too large"))?;
-        allowed(component.0).map_err(|problem| Fault::new(here.as_str(), problem))?;
+        let decoded = self.document.draco.get(&index.value());
+        let count = match decoded {
+            Some(decoded) => decoded.count,
+            None => usize::try_from(accessor.count.0)
+                .map_err(|_| Fault::new(here.as_str(), "count is too large"))?,
+        };
+        let component = decoded.map_or(component.0, |decoded| decoded.component);
+        allowed(component).map_err(|problem| Fault::new(here.as_str(), problem))?;
         let encoding = Encoding {
-            component: component.0,
+            component,
             is_normalized: accessor.normalized,
         };
         let elements = Elements {
             place: here,
             count,
-            size: component.0.size() * expected.multiplicity(),
+            size: component.size() * expected.multiplicity(),
         };
 
         self.budget
             .charge(count as u64, size_of::<T>() as u64, &elements.place)?;
         let convert = |bytes: &[u8]| convert(bytes, encoding);
-        let mut values = match accessor.buffer_view {
-            Some(view) => {
+        let mut values = match (decoded, accessor.buffer_view) {
+            (Some(decoded), _) => elements
+                .slices(&decoded.bytes, 0, None)?
+                .map(convert)
+                .collect(),
+            (None, Some(view)) => {
                 let (bytes, stride) = self.document.view(view, &elements.place)?;
                 let offset = accessor.byte_offset.unwrap_or_default().0;
                 elements
@@ -168,7 +177,7 @@ impl<'a> Accessors<'a> {
                     .map(convert)
                     .collect()
             }
-            None => vec![zero; count],
+            (None, None) => vec![zero; count],
         };
         if let Some(sparse) = &accessor.sparse {
             self.replace(sparse, &elements, &mut values, convert)?;

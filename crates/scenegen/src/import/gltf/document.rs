@@ -7,7 +7,9 @@ use glam::DVec3;
 use gltf::json::{self, Index, Root};
 
 use super::lookup::{get, place};
-use super::{extensions, glb, root, translations, uri};
+use super::meshopt::Compressed;
+use super::{draco, extensions, glb, root, translations, uri};
+use crate::import::budget::Budget;
 use crate::import::error::{Fault, ImportError};
 use crate::import::files;
 use crate::import::folders::Folders;
@@ -21,6 +23,10 @@ pub(super) struct Document {
     pub(super) root: Root,
     /// Translations of nodes that 32 bits do not hold, by the node's index.
     pub(super) long_translations: HashMap<usize, DVec3>,
+    /// Buffer views that are stored compressed, with the bytes of an element, by the view's index.
+    decompressed: HashMap<usize, (Vec<u8>, usize)>,
+    /// Elements that are stored compressed with those of their primitive, by the accessor's index.
+    pub(super) draco: HashMap<usize, draco::Elements>,
     /// Each buffer's bytes, or why they could not be had (which matters only if someone asks).
     buffers: Vec<Result<Vec<u8>, String>>,
 }
@@ -61,14 +67,21 @@ impl Document {
                     None => Err("has no uri".into()),
                 }
             })
-            .collect();
+            .collect::<Vec<Result<Vec<u8>, String>>>();
         extensions::warn_about_root(&root, warnings);
-        Ok(Self {
+        let decompressed = decompress(&root, &buffers).map_err(|fault| fault.in_file(file))?;
+        let mut document = Self {
+            decompressed,
+            draco: HashMap::new(),
             folder: folder.to_owned(),
             long_translations: translations::long(root::without_mark(json), &root),
             root,
             buffers,
-        })
+        };
+        let view = |index, user: &str| document.view(index, user).map(|(bytes, _)| bytes);
+        let decoded = draco::decode_all(&document.root, &view, warnings);
+        document.draco = decoded.map_err(|fault| fault.in_file(file))?;
+        Ok(document)
     }
 
     /// Bytes of a buffer view and its stride.
@@ -78,23 +91,57 @@ impl Document {
         user: &str,
     ) -> Result<(&[u8], Option<usize>), Fault> {
         let view = get(&self.root.buffer_views, index, "bufferViews", user)?;
+        if let Some((bytes, stride)) = self.decompressed.get(&index.value()) {
+            return Ok((bytes, Some(*stride)));
+        }
         let here = place("bufferViews", index.value(), view.name.as_deref());
         let buffer = get(&self.buffers, view.buffer, "buffers", &here)?;
         let buffer = buffer.as_ref().map_err(|problem| {
             Fault::new(format!("buffers/{}", view.buffer.value()), problem.clone())
         })?;
         let start = view.byte_offset.unwrap_or_default().0;
-        let bytes = start
-            .checked_add(view.byte_length.0)
-            .and_then(|end| buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?))
-            .ok_or_else(|| {
-                Fault::new(
-                    here,
-                    format!("reaches beyond the {} bytes of its buffer", buffer.len()),
-                )
-            })?;
+        let bytes = section(buffer, start, view.byte_length.0)
+            .map_err(|problem| Fault::new(here, problem))?;
         Ok((bytes, view.byte_stride.map(|stride| stride.0)))
     }
+}
+
+/// A part of a buffer.
+fn section(buffer: &[u8], start: u64, length: u64) -> Result<&[u8], String> {
+    let end = start.checked_add(length);
+    let range =
+        end.and_then(|end| buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
+    range.ok_or_else(|| format!("reaches beyond the {} bytes of its buffer", buffer.len()))
+}
+
+/// Decodes all compressed buffer views.
+fn decompress(
+    root: &Root,
+    buffers: &[Result<Vec<u8>, String>],
+) -> Result<HashMap<usize, (Vec<u8>, usize)>, Fault> {
+    let mut budget = Budget::geometry();
+    let mut decompressed = HashMap::new();
+    for index in 0..root.buffer_views.len() {
+        let Some(compressed) = Compressed::of_view(root, index)? else {
+            continue;
+        };
+        let at = place(
+            "bufferViews",
+            index,
+            root.buffer_views[index].name.as_deref(),
+        );
+        let buffer = buffers.get(compressed.buffer);
+        let buffer = buffer
+            .ok_or_else(|| Fault::new(&*at, "is compressed in a buffer that there is not"))?;
+        let bytes = match buffer {
+            Ok(buffer) => section(buffer, compressed.offset as u64, compressed.length as u64),
+            Err(problem) => Err(problem.clone()),
+        };
+        let bytes = bytes.map_err(|problem| Fault::new(&*at, problem))?;
+        let decoded = compressed.decode(bytes, &mut budget, &at)?;
+        decompressed.insert(index, (decoded, compressed.stride));
+    }
+    Ok(decompressed)
 }
 
 /// The bytes of a buffer, without what lies behind it.

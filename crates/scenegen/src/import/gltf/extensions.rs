@@ -27,7 +27,10 @@ impl Support {
     fn of(extension: &str) -> Self {
         match extension {
             "EXT_mesh_gpu_instancing"
+            | "EXT_meshopt_compression"
+            | "KHR_meshopt_compression"
             | "EXT_texture_webp"
+            | "KHR_draco_mesh_compression"
             | "KHR_lights_punctual"
             | "KHR_materials_emissive_strength"
             | "KHR_materials_ior"
@@ -39,6 +42,7 @@ impl Support {
             | "KHR_materials_volume"
             | "KHR_mesh_quantization"
             | "KHR_node_visibility"
+            | "KHR_texture_basisu"
             | "KHR_texture_transform" => Self::Imported,
             "KHR_xmp" | "KHR_xmp_json_ld" | "KHR_animation_pointer" => Self::WithoutEffect,
             "KHR_materials_anisotropy" => Self::MaterialSwitch("anisotropyStrength"),
@@ -49,7 +53,7 @@ impl Support {
             "KHR_materials_dispersion" => Self::MaterialSwitch("dispersion"),
             "KHR_materials_iridescence" => Self::MaterialSwitch("iridescenceFactor"),
             "KHR_materials_sheen" => Self::MaterialSwitch("sheenColorFactor"),
-            "KHR_texture_basisu" | "MSFT_texture_dds" => Self::ReportedWhereUsed,
+            "MSFT_texture_dds" => Self::ReportedWhereUsed,
             _ => Self::Unknown,
         }
     }
@@ -74,10 +78,7 @@ pub(super) fn check_required(root: &Root, file: &Path) -> Result<(), ImportError
 
 fn advice(extension: &str) -> &'static str {
     match extension {
-        "EXT_meshopt_compression" | "KHR_meshopt_compression" | "KHR_draco_mesh_compression" => {
-            "decompress it first, for example with `gltf-transform copy in.glb out.glb`"
-        }
-        "KHR_texture_basisu" => "convert its textures to PNG, JPEG or WebP",
+        "MSFT_texture_dds" => "convert its textures to PNG, JPEG or WebP",
         _ => "export the file without it",
     }
 }

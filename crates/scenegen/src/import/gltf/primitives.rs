@@ -6,7 +6,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index};
 
 use super::accessors::Accessors;
-use super::{extensions, variants};
+use super::{draco, extensions, variants};
 use crate::import::error::Fault;
 use crate::import::mesh::RawMesh;
 use crate::import::warnings::Warnings;
@@ -29,6 +29,10 @@ pub(super) fn topology(
     warnings: &mut Warnings,
 ) -> Result<Option<Topology>, Fault> {
     let topology = match primitive.mode {
+        // Whatever the mode was, triangles are decoded.
+        Checked::Valid(Mode::TriangleStrip) if draco::of_primitive(primitive).is_some() => {
+            Topology::List
+        }
         Checked::Valid(Mode::Triangles) => Topology::List,
         Checked::Valid(Mode::TriangleStrip) => Topology::Strip,
         Checked::Valid(Mode::TriangleFan) => Topology::Fan,
@@ -57,7 +61,12 @@ pub(super) fn read(
     warnings: &mut Warnings,
 ) -> Result<RawMesh, Fault> {
     if let Some(used) = &primitive.extensions {
-        extensions::warn_about_others(&used.others, &[variants::EXTENSION], at, warnings);
+        extensions::warn_about_others(
+            &used.others,
+            &[variants::EXTENSION, draco::EXTENSION],
+            at,
+            warnings,
+        );
     }
     let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
     let positions = attribute(Semantic::Positions)

@@ -122,15 +122,20 @@ impl<'a> Textures<'a> {
     }
 }
 
-/// The image in a format that we read, WebP before what stands in for it.
+/// Where textures name images in formats that other readers may not know.
+const FORMATS: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
+
+/// The image in a format that we read, those of extensions before what stands in for them.
 fn source(texture: &Texture) -> Option<Index<Image>> {
     let others = texture.extensions.as_ref().map(|used| &used.others);
-    let webp = others
-        .and_then(|others| others.get("EXT_texture_webp")?.get("source")?.as_u64())
-        .and_then(|source| u32::try_from(source).ok());
+    let named = |format| {
+        let source = others?.get(format)?.get("source")?.as_u64()?;
+        u32::try_from(source).ok()
+    };
+    let newer = FORMATS.into_iter().find_map(named);
     // An absent source is read as u32::MAX by the `gltf` crate.
     let plain = Some(texture.source).filter(|source| source.value() != u32::MAX as usize);
-    webp.map(Index::new).or(plain)
+    newer.map(Index::new).or(plain)
 }
 
 /// How coordinates outside [0, 1] are read, along u and v, and how texels are combined.

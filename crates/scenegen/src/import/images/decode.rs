@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
-use super::{openexr, radiance};
+use super::{basis, openexr, radiance};
 use crate::desc::{ImageDesc, Texels};
 use crate::import::budget::Budget;
 use crate::import::guard::without_panic;
@@ -17,6 +17,7 @@ pub(super) const MAX_EXTENT: u32 = 16384;
 #[derive(Debug)]
 pub(super) enum Encoding {
     Image(ImageFormat),
+    Basis([u32; 2]),
     OpenExr(openexr::Layout),
     Radiance(radiance::Header),
 }
@@ -84,6 +85,10 @@ fn look(bytes: &[u8], extension: Option<&str>) -> Result<(Encoding, [u32; 2], u6
         let size = [layout.width, layout.height];
         return Ok((Encoding::OpenExr(layout), size, 16));
     }
+    if basis::is_ktx2(bytes) {
+        let size = basis::size(bytes)?;
+        return Ok((Encoding::Basis(size), size, 4));
+    }
     if radiance::is_radiance(bytes) {
         let header = radiance::header(bytes)?;
         let size = [header.width, header.height];
@@ -117,6 +122,18 @@ pub(super) fn decode(bytes: &[u8], encoding: Encoding) -> Result<Decoded, String
             let texels = openexr::texels(bytes, &layout)?;
             let size = [layout.width, layout.height];
             Ok(valid(size, texels, layout.largest, layout.remarks))
+        }
+        Encoding::Basis([width, height]) => {
+            let texels = basis::texels(bytes)?;
+            if texels.len() as u64 != u64::from(width) * u64::from(height) {
+                return Err("has another number of texels than its size says".into());
+            }
+            Ok(Decoded {
+                width,
+                height,
+                texels: Texels::Rgba8(texels),
+                remarks: Vec::new(),
+            })
         }
         Encoding::Radiance(header) => {
             let texels = radiance::texels(bytes, &header)?;

@@ -1,5 +1,6 @@
 //! Images: decoded within a budget, and never a reason to give a scene up.
 
+mod basis;
 mod decode;
 mod openexr;
 mod radiance;
