@@ -1,10 +1,11 @@
 //! glTF 2.0 files: nodes are walked, and what they show is read when it is first asked for.
 //!
 //! ```text
-//! file ─ glb, root ─▶ Document ─ nodes ─▶ PlacedNode ─┬─ meshes ─ primitives ─ accessors ─▶ RawMesh
-//!             (JSON, buffers)                         ├─ materials ─ material ─ surface ─▶ MaterialDesc
-//!                                                     │   └─ textures ─ images ─▶ TextureDesc, ImageRequest
-//!                                                     └─ lights, cameras, instancing
+//! file ─ glb, root ─▶ Document ─ animation, nodes ─▶ PlacedNode ─┬─ meshes ─ primitives ─ accessors ─▶ RawMesh ─ deform, placements
+//!    (JSON, buffers; meshopt, draco)                             │   └─ skins
+//!                                                                ├─ materials ─ material ─ surface ─▶ MaterialDesc
+//!                                                                │   └─ textures ─ images ─▶ TextureDesc, ImageRequest
+//!                                                                └─ lights, cameras, instancing
 //! ```
 
 mod accessors;

@@ -27,7 +27,7 @@ pub(in crate::import) fn decode_one(
     bytes: &[u8],
     extension: Option<&str>,
 ) -> Result<Decoded, String> {
-    let encoding = inspect(bytes, extension, &mut Budget::images())?;
+    let encoding = inspect(bytes, extension, &mut Budget::images(bytes.len() as u64))?;
     decode(bytes, encoding)
 }
 

@@ -115,7 +115,10 @@ pub(in crate::import) fn decode_all(
     requests: Vec<ImageRequest<'_>>,
     warnings: &mut Warnings,
 ) -> Vec<ImageDesc> {
-    let mut budget = Budget::images();
+    let encoded = requests
+        .iter()
+        .filter_map(|request| request.bytes.as_ref().ok());
+    let mut budget = Budget::images(encoded.map(|bytes| bytes.len() as u64).sum());
     let checked: Vec<_> = requests
         .into_iter()
         .map(|request| {
