@@ -4,6 +4,8 @@ mod basis;
 mod decode;
 mod openexr;
 mod radiance;
+#[cfg(test)]
+mod radiance_tests;
 mod requests;
 
 pub(super) use decode::decode_one;
