@@ -111,6 +111,9 @@ const COMMON: &[&str] = &[
     "render/src/bsdf/mod.rs",
     "render/src/camera.rs",
     "render/src/domain/",
+    // Which samples of which pixels.
+    "render/src/film/pass.rs",
+    "render/src/film/rect.rs",
     // How many numbers a sample has.
     "render/src/film/replicates.rs",
     "render/src/layer.rs",

@@ -3,11 +3,8 @@
 use rayon::prelude::*;
 
 use crate::moments::{CHANNELS, MeanVariance, halves_of};
-use crate::plausible::plausible;
 use crate::sampled::{Replicate, Sampled};
-
-/// Pixels that a thread takes at a time.
-pub(crate) const CHUNK: usize = 4096;
+use crate::smoothed::{CHUNK, Smoothed};
 
 /// Of an image, by channel.
 #[derive(Clone, Debug)]
@@ -36,14 +33,12 @@ pub(crate) struct Twice {
 impl Contributions {
     pub(crate) fn of(width: usize, pixels: &[Sampled<'_>], replicates: &[Replicate<'_>]) -> Self {
         let count = pixels.len() as f64;
-        let mut images = [(); 3].map(|()| vec![[0.0; CHANNELS]; pixels.len()]);
-        let sum = means(pixels, &mut images);
-        let mean = sum.map(|sum| sum / count);
+        let images = [0, 1, 2].map(|part| smoothed(width, pixels, part));
+        let mean = sum_of_means(pixels).map(|sum| sum / count);
         let color = (mean[0] + mean[1] + mean[2]) / 3.0;
         let floor = [color, color, color, mean[3]].map(|mean| 1e-2 * mean * mean);
-        // One over the squared mean of a pixel, as far as that is plausible.
-        let scale = |image: &[[f32; CHANNELS]], p: usize, mean: [f64; CHANNELS]| {
-            let mean = plausible(image, width, p, mean);
+        // One over the squared mean of a pixel.
+        let scale = |mean: [f64; CHANNELS]| {
             let mut weight = [0.0; CHANNELS];
             for k in 0..CHANNELS {
                 let squared = mean[k] * mean[k] + floor[k];
@@ -66,8 +61,8 @@ impl Contributions {
                 let one_over = 1.0 / pixel.samples as f64;
                 let statistics = pixel.moments.statistics(pixel.samples);
                 let (all, halves) = &statistics;
-                let weight = scale(&images[0], p, all.mean);
-                let of_halves = [0, 1].map(|half| scale(&images[1 + half], p, halves[half].mean));
+                let weight = scale(images[0].mean(p));
+                let of_halves = [0, 1].map(|half| scale(images[1 + half].mean(p)));
                 let jackknifed = jackknifed(pixel.samples, &statistics, weight, of_halves);
                 let mut contribution = [0.0; CHANNELS];
                 for k in 0..CHANNELS {
@@ -108,7 +103,7 @@ impl Contributions {
                 let statistics = pair.map(|set| set.moments.statistics(set.samples));
                 let [first, second] = [&statistics[0].0.mean, &statistics[1].0.mean];
                 let middle = std::array::from_fn(|k| 0.5 * (first[k] + second[k]));
-                let weight = scale(&images[0], replicate.pixel, middle);
+                let weight = scale(images[0].mean_of(replicate.pixel, middle));
                 let within = [0, 1]
                     .map(|k| jackknifed(pair[k].samples, &statistics[k], weight, [weight; 2]));
                 Twice {
@@ -122,26 +117,33 @@ impl Contributions {
     }
 }
 
-/// The means of all samples, of the even and of the odd ones; their sums over all pixels.
-fn means(pixels: &[Sampled<'_>], images: &mut [Vec<[f32; CHANNELS]>; 3]) -> [f64; CHANNELS] {
-    let [all, even, odd] = images.each_mut().map(|image| image.par_chunks_mut(CHUNK));
-    let chunks = pixels.par_chunks(CHUNK).zip(all).zip(even).zip(odd);
-    let sums: Vec<_> = chunks
-        .map(|(((pixels, all), even), odd)| {
-            let mut sum = [0.0; CHANNELS];
-            for (p, pixel) in pixels.iter().enumerate() {
-                let (of_all, of_halves) = pixel.moments.statistics(pixel.samples);
-                all[p] = of_all.mean.map(|mean| mean as f32);
-                even[p] = of_halves[0].mean.map(|mean| mean as f32);
-                odd[p] = of_halves[1].mean.map(|mean| mean as f32);
-                sum = std::array::from_fn(|k| sum[k] + of_all.mean[k]);
-            }
-            sum
-        })
-        .collect();
-    sums.into_iter().fold([0.0; CHANNELS], |sum, of_chunk| {
-        std::array::from_fn(|k| sum[k] + of_chunk[k])
-    })
+/// The means of all samples, of the even or of the odd ones: part 0, 1 or 2.
+fn smoothed(width: usize, pixels: &[Sampled<'_>], part: usize) -> Smoothed {
+    let of = |pixel: &Sampled<'_>| {
+        let (all, [even, odd]) = pixel.moments.statistics(pixel.samples);
+        let [even_count, odd_count] = halves_of(pixel.samples);
+        let parts = [(all, pixel.samples), (even, even_count), (odd, odd_count)];
+        let (MeanVariance { mean, variance }, count) = parts[part];
+        let one_over = 1.0 / count as f64;
+        (
+            mean.map(|mean| mean as f32),
+            variance.map(|variance| (variance * one_over) as f32),
+        )
+    };
+    let (means, noise) = pixels.par_iter().with_min_len(CHUNK).map(of).unzip();
+    Smoothed::new(width, means, noise)
+}
+
+/// Chunk by chunk, so that it does not depend on threads.
+fn sum_of_means(pixels: &[Sampled<'_>]) -> [f64; CHANNELS] {
+    let add =
+        |sum: [f64; CHANNELS], mean: [f64; CHANNELS]| std::array::from_fn(|k| sum[k] + mean[k]);
+    let of_chunk = |chunk: &[Sampled<'_>]| {
+        let means = chunk.iter().map(|pixel| pixel.moments.mean(pixel.samples));
+        means.fold([0.0; CHANNELS], add)
+    };
+    let sums: Vec<_> = pixels.par_chunks(CHUNK).map(of_chunk).collect();
+    sums.into_iter().fold([0.0; CHANNELS], add)
 }
 
 /// Variance over the number of samples times a weight, by the jackknife of halves, each of which has its own weight.

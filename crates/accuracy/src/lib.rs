@@ -25,6 +25,7 @@ mod normal;
 mod plausible;
 mod relative_mse;
 mod sampled;
+mod smoothed;
 pub mod sweep;
 
 pub use convergence::{Convergence, Forecast, Measured};

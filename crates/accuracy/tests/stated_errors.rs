@@ -154,7 +154,7 @@ fn intervals_of_independent_samples_hold_the_truth() {
 fn intervals_of_well_distributed_samples_hold_the_truth() {
     for samples in [16, 64] {
         let (held, ratio) = coverage(stratified, samples, true);
-        assert!((0.92..=0.99).contains(&held), "{samples} samples: {held}");
+        assert!(held >= 0.92, "{samples} samples: {held}");
         assert!((ratio - 1.0).abs() < 0.03, "{samples} samples: {ratio}");
     }
 }
