@@ -12,10 +12,11 @@
 //! sampling (Neyman 1938; Cochran, *Sampling Techniques*, 12.9). It is exact on average, and no single bright sample
 //! disturbs it, since the two contain the same one.
 //!
-//! *The denominator is noisy.* A pixel's mean is weighed with its neighbours' (`smoothed.rs`), which is nearer to μ. With that in place of μ, error and denominator rise together, and the quotient falls short by a
-//! part that shrinks as 1/N. The same statistic of the even and of the odd samples falls short by twice that part: twice
-//! the one less the other is rid of it (the jackknife of halves; Quenouille 1949). And no pixel counts as far brighter
-//! than its neighbours (`plausible.rs`).
+//! *The denominator is noisy.* A pixel's mean is drawn to its neighbours' as far as they differ by noise alone
+//! (`smoothed.rs`). What noise is left rises together with the error, and the quotient falls short by a part that shrinks as
+//! 1/N. The same statistic of the even and of the odd samples falls short by twice that part: twice the one less the other
+//! is rid of it (the jackknife of halves; Quenouille 1949). And no pixel counts as far brighter than its neighbours
+//! (`plausible.rs`).
 //!
 //! *The interval is of the error of this image.* Where ε_i is the error of sample i of N independent ones, (x − μ)² differs from
 //! the samples' variance over N by Σ ε_i ε_j / N(N−1) over all i ≠ j, whose variance is 2 σ⁴ / N(N−1) for samples
