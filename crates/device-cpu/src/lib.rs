@@ -7,6 +7,7 @@
 
 mod camera_rays;
 mod device;
+mod export;
 mod interpreter;
 mod job;
 pub mod lanes;

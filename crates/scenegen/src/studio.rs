@@ -5,7 +5,7 @@
 
 use glam::Vec3;
 
-use crate::desc::{EnvironmentDesc, ImageDesc, SceneDesc, Texels};
+use crate::desc::{ColorInput, EnvironmentDesc, ImageDesc, LightDesc, SceneDesc, Texels};
 
 /// A rectangle of light, seen from the model.
 struct SoftBox {
@@ -44,20 +44,22 @@ impl SceneDesc {
         });
     }
 
-    /// Nothing in the scene is a lamp: there are no lights and no environment, and what glows is no brighter than white paper and
-    /// a small part of all surfaces, as the displays of a model are.
+    /// Nothing in the scene is a lamp: there is no environment and no light that shines, and what glows is no brighter than
+    /// white paper and a small part of all surfaces, as the displays of a model are.
     pub fn is_unlit(&self) -> bool {
         /// Part of all surfaces up to which glowing details are details.
         const DETAILS: f64 = 0.25;
-        if !self.lights.is_empty() || self.environment.is_some() {
+        let shines = |light: &LightDesc| light.intensity.into_iter().any(|c| c > 0.0);
+        if self.lights.iter().any(shines) || self.environment.is_some() {
             return false;
         }
         let (mut all, mut glowing) = (0.0, 0.0);
         for instance in &self.instances {
             let mesh = &self.meshes[instance.mesh];
-            let emission = self.materials[mesh.material].emission.factor;
-            let brightest = emission.into_iter().fold(0.0, f32::max);
-            if brightest > 1.0 {
+            let emission = &self.materials[mesh.material].emission;
+            let glow = self.glowing_part(emission);
+            let brightest = emission.factor.into_iter().fold(0.0, f32::max);
+            if glow > 0.0 && brightest > 1.0 {
                 return false;
             }
             let place = |v: u32| {
@@ -66,16 +68,47 @@ impl SceneDesc {
                     .transform_point3(mesh.positions[v as usize])
             };
             let area = |triangle: &[u32; 3]| {
-                let [a, b, c] = triangle.map(place);
-                f64::from(0.5 * (b - a).cross(c - a).length())
+                let [a, b, c] = triangle.map(|v| place(v).as_dvec3());
+                0.5 * (b - a).cross(c - a).length()
             };
             let area: f64 = mesh.triangles.iter().map(area).sum();
             all += area;
-            if brightest > 0.0 {
-                glowing += area;
-            }
+            glowing += glow * area;
         }
         glowing <= DETAILS * all
+    }
+
+    /// The part of a texture that glows, of what is brightest in it at least a hundredth; all of it or nothing without one.
+    fn glowing_part(&self, emission: &ColorInput) -> f64 {
+        let [r, g, b] = emission.factor;
+        if r.max(g).max(b) <= 0.0 {
+            return 0.0;
+        }
+        let Some(texture) = &emission.texture else {
+            return 1.0;
+        };
+        let image = &self.images[self.textures[texture.texture].image];
+        // Channels that the factor takes away do not glow. Codes need no decoding to be compared.
+        let on = [r, g, b].map(|c| if c > 0.0 { 1.0 } else { 0.0 });
+        let largest = |[a, b, c]: [f32; 3]| (a * on[0]).max(b * on[1]).max(c * on[2]);
+        let values: Vec<f32> = match &image.texels {
+            Texels::Rgba8(texels) => texels
+                .iter()
+                .map(|&[r, g, b, _]| largest([r, g, b].map(f32::from)))
+                .collect(),
+            Texels::Rgba16(texels) => texels
+                .iter()
+                .map(|&[r, g, b, _]| largest([r, g, b].map(f32::from)))
+                .collect(),
+            Texels::RgbaF32(texels) => texels
+                .iter()
+                .map(|&[r, g, b, _]| largest([r, g, b]))
+                .collect(),
+        };
+        // A tenth of the largest code is a hundredth of its light.
+        let brightest = values.iter().copied().fold(0.0, f32::max);
+        let glows = |value: &&f32| brightest > 0.0 && **value >= 0.1 * brightest;
+        values.iter().filter(glows).count() as f64 / values.len() as f64
     }
 }
 
@@ -139,6 +172,7 @@ impl SoftBox {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::desc::{Filter, TextureDesc, TextureUse, Wrap};
 
     /// What a white, matte surface with this normal sends out: the mean radiance over its hemisphere, weighed by the cosine.
     fn white(normal: Vec3) -> [f64; 3] {
@@ -191,6 +225,44 @@ mod tests {
             f64::from(wall) < 0.5 * front && wall > 0.1,
             "{wall} {front}"
         );
+    }
+
+    #[test]
+    fn a_model_with_glowing_details_is_unlit_and_a_lamp_is_not() {
+        let scene = |factor: f32, glowing_texels: usize| {
+            let mut texels = vec![[3_u8, 3, 3, 255]; 100];
+            texels[..glowing_texels].fill([255; 4]);
+            let mut scene = SceneDesc::default();
+            scene.add_ground();
+            scene.images.push(ImageDesc {
+                name: "glow".to_owned(),
+                width: 10,
+                height: 10,
+                texels: Texels::Rgba8(texels),
+            });
+            let input = ColorInput {
+                factor: [factor; 3],
+                texture: None,
+            };
+            (scene, input)
+        };
+        for (factor, glowing, part) in [(1.0, 3, 0.03), (1.0, 100, 1.0), (0.0, 100, 0.0)] {
+            let (mut scene, mut input) = scene(factor, glowing);
+            scene.textures.push(TextureDesc {
+                image: 0,
+                wrap: [Wrap::Repeat; 2],
+                filter: Filter::Linear,
+            });
+            input.texture = Some(TextureUse {
+                texture: 0,
+                uv_set: 0,
+                transform: None,
+            });
+            assert_eq!(scene.glowing_part(&input), part);
+        }
+        let (scene, input) = scene(0.5, 0);
+        assert_eq!(scene.glowing_part(&input), 1.0);
+        assert!(scene.is_unlit());
     }
 
     #[test]

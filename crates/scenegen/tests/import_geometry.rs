@@ -1,4 +1,6 @@
 //! glTF geometry, feature by feature, with exact expected values.
+//!
+//! Longer than 400 lines: one test for each feature, which read as a table.
 
 use common::gltf_text::{F32, Gltf, I8, I16, SQUARE, U8, U16, U32, f32_bytes, u16_bytes, warns};
 use glam::{Vec2, Vec3, Vec4};

@@ -1,4 +1,6 @@
 //! glTF materials, textures and images, feature by feature.
+//!
+//! Longer than 400 lines: one test for each feature, which read as a table.
 
 use std::f32::consts::FRAC_PI_2;
 

@@ -4,14 +4,13 @@ use std::io::Cursor;
 
 use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
+use super::limits::{LARGEST_RADIANCE, MAX_EXTENT};
+use super::unreadable::unreadable;
 use super::{basis, openexr, radiance};
 use crate::desc::{ImageDesc, Texels};
 use crate::import::budget::Budget;
 use crate::import::guard::without_panic;
 use crate::import::warnings::Warnings;
-
-/// The largest width and height.
-pub(super) const MAX_EXTENT: u32 = 16384;
 
 /// How a file is encoded, with what was found out about it.
 #[derive(Debug)]
@@ -110,11 +109,6 @@ fn look(bytes: &[u8], extension: Option<&str>) -> Result<(Encoding, [u32; 2], u6
     Ok((Encoding::Image(format), size, texel_bytes))
 }
 
-/// Says that a decoder gave up.
-pub(super) fn unreadable(error: impl std::fmt::Display) -> String {
-    format!("cannot be read ({error})")
-}
-
 /// Decodes an image whose encoding [`inspect`] found.
 pub(super) fn decode(bytes: &[u8], encoding: Encoding) -> Result<Decoded, String> {
     without_panic(|| match encoding {
@@ -138,7 +132,7 @@ pub(super) fn decode(bytes: &[u8], encoding: Encoding) -> Result<Decoded, String
         Encoding::Radiance(header) => {
             let texels = radiance::texels(bytes, &header)?;
             let size = [header.width, header.height];
-            Ok(valid(size, texels, f32::MAX, header.remarks))
+            Ok(valid(size, texels, LARGEST_RADIANCE, header.remarks))
         }
         Encoding::Image(format) => decode_with_image(bytes, format),
     })
@@ -154,7 +148,7 @@ fn decode_with_image(bytes: &[u8], format: ImageFormat) -> Result<Decoded, Strin
     let texels = match image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
             let texels = image.into_rgba32f().into_raw().as_chunks().0.to_vec();
-            return Ok(valid([width, height], texels, f32::MAX, Vec::new()));
+            return Ok(valid([width, height], texels, LARGEST_RADIANCE, Vec::new()));
         }
         DynamicImage::ImageLuma16(_)
         | DynamicImage::ImageLumaA16(_)
@@ -189,17 +183,17 @@ fn valid(
 ) -> Decoded {
     let (mut replaced, mut infinite) = (0, 0);
     for texel in &mut texels {
-        if texel.iter().all(|&value| value.is_finite() && value >= 0.0) {
+        if texel.iter().all(|&value| (0.0..=largest).contains(&value)) {
             continue;
         }
         replaced += usize::from(!texel.iter().all(|&value| value >= 0.0));
-        infinite += usize::from(texel.contains(&f32::INFINITY));
+        infinite += usize::from(texel.iter().any(|&value| value > largest));
         // NaN is the smaller one of nothing.
         *texel = texel.map(|value| value.max(0.0).min(largest));
     }
     for (count, problem, used) in [
         (replaced, "NaN or negative", 0.0),
-        (infinite, "infinite", largest),
+        (infinite, "infinite or too large", largest),
     ] {
         if count > 0 {
             remarks.push(format!(

@@ -2,11 +2,13 @@
 
 mod basis;
 mod decode;
+mod limits;
 mod openexr;
 mod radiance;
 #[cfg(test)]
 mod radiance_tests;
 mod requests;
+mod unreadable;
 
 pub(super) use decode::decode_one;
 pub(super) use requests::{Derived, ImageRequest, ImageRole, decode_all};

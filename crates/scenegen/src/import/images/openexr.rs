@@ -5,7 +5,8 @@ use std::io::Cursor;
 use exr::meta::header::Header;
 use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel};
 
-use super::decode::{MAX_EXTENT, unreadable};
+use super::limits::{LARGEST_RADIANCE, MAX_EXTENT};
+use super::unreadable::unreadable;
 
 /// Parts of the names of layers that hold what a camera has seen, in other words than that of the light in it.
 const PICTURES: [&str; 6] = ["beauty", "combined", "rgba", "rgb", "color", "main"];
@@ -97,7 +98,7 @@ pub(super) fn layout(bytes: &[u8]) -> Result<Layout, String> {
         largest: if used.iter().all(|name| are_halves(name)) {
             LARGEST_HALF
         } else {
-            f32::MAX
+            LARGEST_RADIANCE
         },
         channels,
         remarks,

@@ -16,7 +16,7 @@ use crate::import::warnings::Warnings;
 const MAX_LIBRARIES: usize = 256;
 
 /// More words of one are not looked at.
-const MAX_WORDS: usize = 8;
+const MAX_WORDS: usize = 64;
 
 /// All materials of all libraries.
 #[derive(Default)]

@@ -29,7 +29,9 @@ pub(super) fn statements(text: &str) -> impl Iterator<Item = Statement<'_>> {
         loop {
             let (line, mut last) = lines.next()?;
             let mut text = Cow::Borrowed(last);
-            while let Some(start) = continued(last) {
+            let keyword = split_word(last).0.to_ascii_lowercase();
+            let is_name = matches!(keyword.as_str(), "o" | "g" | "usemtl" | "newmtl");
+            while let Some(start) = continued(last, is_name) {
                 let Some((_, next)) = lines.next() else { break };
                 let text = text.to_mut();
                 text.truncate(text.len() - (last.len() - start.len()));
@@ -65,10 +67,12 @@ fn lines(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// What stands before the backslash that says that a line goes on in the next. Comments do not go on, and a
-/// backslash behind a letter is the end of a folder's name, or half of a character of another code page.
-fn continued(line: &str) -> Option<&str> {
+/// backslash behind a letter is the end of a folder's name, or half of a character of another code page; so is one behind
+/// anything but a blank where a statement is a name.
+fn continued(line: &str, is_name: bool) -> Option<&str> {
     let start = line.trim_end_matches(is_blank).strip_suffix('\\')?;
     let goes_on = match start.chars().next_back() {
+        Some(last) if is_name => is_blank(last),
         Some(last) => is_blank(last) || last.is_ascii_digit() || "./".contains(last),
         None => true,
     };
@@ -99,9 +103,10 @@ pub(super) fn split_word(text: &str) -> (&str, &str) {
 
 /// The words of a statement that has no names, without the comment behind it.
 pub(super) fn words(rest: &str) -> impl Iterator<Item = &str> {
-    rest.split('#')
-        .next()
-        .unwrap_or_default()
+    // What C prints for no number has a `#` of its own: `1.#IND`, `-1.#QNAN`, `1.#INF`.
+    let is_comment = |&(index, _): &(usize, &str)| !rest[..index].ends_with('.');
+    let end = rest.match_indices('#').find(is_comment);
+    rest[..end.map_or(rest.len(), |(index, _)| index)]
         .split(is_blank)
         .filter(|word| !word.is_empty())
 }
@@ -130,6 +135,22 @@ mod tests {
             .map(|&(line, keyword, rest)| (line, keyword.to_owned(), rest.to_owned()))
             .collect();
         assert_eq!(read(text), expected, "{text:?}");
+    }
+
+    #[test]
+    fn names_of_folders_do_not_continue_and_broken_numbers_are_no_comments() {
+        check(
+            "o D:\\scans\\2024\\\nusemtl a.\\\nv 1\\\n 2 \\\n3\ng a \\\n b",
+            &[
+                (1, "o", "D:\\scans\\2024\\"),
+                (2, "usemtl", "a.\\"),
+                (3, "v", "1  2  3"),
+                (6, "g", "a   b"),
+            ],
+        );
+        let split = |rest| words(rest).collect::<Vec<_>>();
+        assert_eq!(split("1 -1.#QNAN 1.#INF # 3"), ["1", "-1.#QNAN", "1.#INF"]);
+        assert_eq!(split("1 2#3"), ["1", "2"]);
     }
 
     #[test]
