@@ -16,10 +16,6 @@ const NONE: u32 = u32::MAX;
 /// Cost of an inner node of the binary tree, in packets: several of them become one wide node.
 const NODE_COST: f32 = 0.3;
 
-/// Most nodes that a search looks at. Where boxes lie in each other, no branch can be left out, and searches would take time that
-/// grows with the square of their number (hard case B-07).
-const MOST_LOOKED_AT: u32 = 1 << 12;
-
 #[derive(Clone, Copy)]
 struct LinkedNode {
     bounds: Box3,
@@ -230,15 +226,9 @@ impl LinkedTree {
         let mut pivot = parent;
         let mut sibling = self.sibling(from);
         let mut remaining = self.node(sibling).bounds;
-        let mut left_to_look_at = MOST_LOOKED_AT;
         loop {
             stack.push((saved, sibling));
             while let Some((saved, node)) = stack.pop() {
-                if left_to_look_at == 0 {
-                    stack.clear();
-                    break;
-                }
-                left_to_look_at -= 1;
                 if saved - area <= best.gain {
                     continue;
                 }
@@ -262,7 +252,7 @@ impl LinkedTree {
                 remaining = remaining.union(&self.node(sibling).bounds);
                 saved += self.node(pivot).bounds.half_area() - remaining.half_area();
             }
-            if pivot == 0 || left_to_look_at == 0 {
+            if pivot == 0 {
                 break;
             }
             sibling = self.sibling(pivot);
