@@ -12,6 +12,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use rayon::prelude::*;
 
 use crate::bounds::Bounds;
 use crate::build::balance::limit_depth;
@@ -28,15 +29,21 @@ pub(crate) fn build_tree(mesh: &Mesh<'_>, prims: &[u32]) -> (BinaryTree, Vec<Ref
     }
     let references = split_references(mesh, prims);
     let boxes = unit_boxes(&references);
-    let (order, groups) = group_equal(&boxes);
-    let unique: Vec<Aabb> = groups
+    let (order, groups) = group_alike(&boxes);
+    let unlike: Vec<Aabb> = groups
         .iter()
-        .map(|group| boxes[order[group.start] as usize])
+        .map(|group| {
+            order[group.clone()]
+                .iter()
+                .fold(Aabb::empty(), |all, &index| {
+                    all.union(&boxes[index as usize])
+                })
+        })
         .collect();
-    let indices = (0..unique.len() as u32).collect();
+    let indices = (0..unlike.len() as u32).collect();
     let mut bvh2 = PlocBuilder::new().build(
         PlocSearchDistance::Medium,
-        &unique,
+        &unlike,
         indices,
         SortPrecision::U128,
         1,
@@ -80,16 +87,20 @@ pub(crate) fn build_tree(mesh: &Mesh<'_>, prims: &[u32]) -> (BinaryTree, Vec<Ref
 enum Source {
     /// A node of obvhs' tree.
     WideNode(u32),
-    /// References with equal boxes, a range of their order.
+    /// References with boxes that are alike, a range of their order.
     Group(Range<usize>),
 }
 
-/// The boxes' indices, ordered so that equal boxes are neighbours, and the ranges of equals.
+/// The boxes' indices, ordered so that boxes that are alike are neighbours, and the ranges of these.
+/// Boxes are alike if they are equal on a grid of [`ALIKE`] of their largest extent.
 ///
-/// obvhs gets one of each: PLOC merges mutual nearest neighbours, and among more equal boxes than
-/// its search distance it finds none and never ends.
-fn group_equal(boxes: &[Aabb]) -> (Vec<u32>, Vec<Range<usize>>) {
-    let key = |index: u32| {
+/// obvhs gets one box for each range: PLOC merges mutual nearest neighbours. Among more equal boxes
+/// than its search distance it finds none and never ends, and in a stack of nearly equal ones, whose
+/// unions round to few different areas, it finds only a few in each pass over all of them.
+fn group_alike(boxes: &[Aabb]) -> (Vec<u32>, Vec<Range<usize>>) {
+    let keys: Vec<_> = boxes.par_iter().map(grid_corners).collect();
+    let key = |index: u32| &keys[index as usize];
+    let exact = |index: u32| {
         let bounds = &boxes[index as usize];
         (
             bounds.min.to_array().map(f32::to_bits),
@@ -97,14 +108,45 @@ fn group_equal(boxes: &[Aabb]) -> (Vec<u32>, Vec<Range<usize>>) {
         )
     };
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-    order.sort_unstable_by_key(|&index| (key(index), index));
+    order.par_sort_unstable_by(|&a, &b| {
+        key(a)
+            .cmp(key(b))
+            .then_with(|| exact(a).cmp(&exact(b)))
+            .then(a.cmp(&b))
+    });
     let mut groups = Vec::new();
     let mut start = 0;
-    for equals in order.chunk_by(|&a, &b| key(a) == key(b)) {
-        groups.push(start..start + equals.len());
-        start += equals.len();
+    for alike in order.chunk_by(|&a, &b| key(a) == key(b)) {
+        groups.push(start..start + alike.len());
+        start += alike.len();
     }
     (order, groups)
+}
+
+/// Too little for the surface area heuristic to tell the boxes apart.
+const ALIKE: f32 = 1.0 / 8192.0;
+
+/// The grid's spacing and the box's corners on it, as bits.
+fn grid_corners(bounds: &Aabb) -> [u64; 7] {
+    let extent = (bounds.max - bounds.min).max_element();
+    // A power of two, so that boxes of about the same size share a grid.
+    let exponent = f32::from_bits(extent.to_bits() & f32::INFINITY.to_bits());
+    let spacing = f64::from(exponent.max(f32::MIN_POSITIVE)) * f64::from(ALIKE);
+    let [min, max] = [bounds.min, bounds.max].map(|corner| {
+        // Adding zero makes one zero of both.
+        corner
+            .to_array()
+            .map(|x| ((f64::from(x) / spacing).floor() + 0.0).to_bits())
+    });
+    [
+        spacing.to_bits(),
+        min[0],
+        min[1],
+        min[2],
+        max[0],
+        max[1],
+        max[2],
+    ]
 }
 
 /// obvhs' default sequence of reinsertions, the ratio of nodes considered shrinking with each.
@@ -166,4 +208,45 @@ fn unit_boxes(references: &[Reference]) -> Vec<Aabb> {
         .iter()
         .map(|r| Aabb::new(place(r.bounds.lo), place(r.bounds.hi)))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square_at(z: f32) -> Aabb {
+        Aabb::new(Vec3A::new(-1.0, -1.0, z), Vec3A::new(1.0, 1.0, z))
+    }
+
+    #[test]
+    fn a_dense_stack_is_few_boxes_in_its_own_order() {
+        let boxes: Vec<Aabb> = (0..10_000).map(|i| square_at(i as f32 * 1e-8)).collect();
+        let (order, groups) = group_alike(&boxes);
+        assert!(groups.len() <= 2, "{} groups", groups.len());
+        assert_eq!(order, (0..10_000).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn boxes_that_differ_are_not_grouped() {
+        let mut boxes: Vec<Aabb> = (0..1000).map(|i| square_at(i as f32 * 1e-3)).collect();
+        // The same corner, and half the size.
+        boxes.push(Aabb::new(boxes[0].min, Vec3A::ZERO));
+        assert_eq!(group_alike(&boxes).1.len(), boxes.len());
+    }
+
+    #[test]
+    fn every_box_is_in_one_group() {
+        let spread = |i: u32| (i.wrapping_mul(2_654_435_761) >> 8) as f32 / (1 << 24) as f32;
+        let boxes: Vec<Aabb> = (0..3000)
+            .map(|i| square_at(spread(i) * 1e-3 - 5e-4))
+            .collect();
+        let (mut order, groups) = group_alike(&boxes);
+        let ends: Vec<usize> = groups.iter().map(|group| group.end).collect();
+        let starts: Vec<usize> = groups.iter().map(|group| group.start).collect();
+        assert_eq!(starts[0], 0);
+        assert_eq!(starts[1..], ends[..ends.len() - 1]);
+        assert_eq!(ends.last(), Some(&boxes.len()));
+        order.sort_unstable();
+        assert_eq!(order, (0..3000).collect::<Vec<_>>());
+    }
 }
