@@ -70,12 +70,12 @@ const REFERENCES: &[Reference] = &[
     },
 ];
 
-fn vector(entry: &Value, name: &str) -> [f32; 3] {
+fn vector(entry: &Value, name: &str) -> [f64; 3] {
     let numbers = entry[name]
         .as_array()
         .unwrap()
         .iter()
-        .map(|n| n.as_f64().unwrap() as f32);
+        .map(|n| n.as_f64().unwrap());
     numbers.collect::<Vec<_>>().try_into().unwrap()
 }
 

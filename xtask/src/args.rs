@@ -66,10 +66,10 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) env: Option<PathBuf>,
     /// Factor on the environment's radiance
-    #[arg(long, value_name = "X", default_value_t = 1.0, requires = "env", value_parser = non_negative)]
+    #[arg(long, value_name = "X", default_value_t = 1.0, requires = "env", allow_negative_numbers = true, value_parser = non_negative)]
     pub(crate) env_strength: f32,
     /// Turn of the environment about +Y
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "env", allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "env", allow_negative_numbers = true, value_parser = finite::<f32>)]
     pub(crate) env_rotate: f32,
     /// When a studio lights the scene: soft boxes before grey walls
     #[arg(long, value_enum, default_value_t = StudioArg::Auto)]
@@ -81,8 +81,17 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) variant: Option<String>,
     /// Show this moment of a glTF file's animations; without it, the pose in which the file stands
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", group = "moment", allow_negative_numbers = true, value_parser = finite::<f64>)]
     pub(crate) time_code: Option<f64>,
+    /// The same by the number of a frame, which --fps makes a time
+    #[arg(long, value_name = "N", group = "moment", allow_negative_numbers = true, value_parser = finite::<f64>)]
+    pub(crate) frame: Option<f64>,
+    /// Frames a second, of which glTF files say nothing; Blender's default is 24
+    #[arg(long, value_name = "X", default_value_t = 24.0, requires = "frame", value_parser = positive)]
+    pub(crate) fps: f64,
+    /// Show only this animation of a glTF file
+    #[arg(long, value_name = "NAME|INDEX", requires = "moment")]
+    pub(crate) animation: Option<String>,
     /// Fail where the scene cannot be rendered faithfully, instead of warning
     #[arg(long)]
     pub(crate) strict: bool,
@@ -94,12 +103,12 @@ pub(crate) struct SceneArgs {
     pub(crate) eye: Option<Triple>,
     /// Direction of view
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    pub(crate) dir: Option<Triple>,
+    pub(crate) dir: Option<Direction>,
     /// Which way is up in the image
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    pub(crate) up: Option<Triple>,
+    pub(crate) up: Option<Direction>,
     /// Vertical field of view
-    #[arg(long, value_name = "DEGREES", value_parser = field_of_view)]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = field_of_view)]
     pub(crate) fov: Option<f32>,
     /// Width and height of the image in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480")]
@@ -232,48 +241,61 @@ pub(crate) struct PassedOn {
     pub(crate) args: Vec<OsString>,
 }
 
-/// Three numbers with commas between them.
+/// Three numbers with commas between them. In 64 bits, since scenes may lie far from the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Triple(pub(crate) [f32; 3]);
+pub(crate) struct Triple(pub(crate) [f64; 3]);
 
 impl FromStr for Triple {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Vec<f32> = text
+        let numbers: Vec<f64> = text
             .split(',')
             .map(|part| finite(part.trim()))
             .collect::<Result<_, _>>()?;
-        let three = <[f32; 3]>::try_from(numbers);
+        let three = <[f64; 3]>::try_from(numbers);
         three
             .map(Self)
             .map_err(|_| "expected three numbers, as in 1,0.5,-2".to_owned())
     }
 }
 
-fn finite(text: &str) -> Result<f32, String> {
-    let number: f32 = text
+/// Three numbers that are not all zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Direction(pub(crate) [f64; 3]);
+
+impl FromStr for Direction {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let Triple(numbers) = text.parse()?;
+        match numbers == [0.0; 3] {
+            true => Err("zero is no direction".to_owned()),
+            false => Ok(Self(numbers)),
+        }
+    }
+}
+
+fn finite<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
+    let number: T = text
         .parse()
         .map_err(|_| format!("{text:?} is not a number"))?;
-    if number.is_finite() {
+    if number.into().is_finite() {
         Ok(number)
     } else {
         Err("expected a finite number".to_owned())
     }
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
-    let number: f64 = text
-        .parse()
-        .map_err(|_| format!("{text:?} is not a number"))?;
-    if number.is_finite() {
+fn positive(text: &str) -> Result<f64, String> {
+    let number = finite(text)?;
+    if number > 0.0 {
         Ok(number)
     } else {
-        Err("expected a finite number".to_owned())
+        Err("expected a number greater than zero".to_owned())
     }
 }
 
 fn non_negative(text: &str) -> Result<f32, String> {
-    let number = finite(text)?;
+    let number: f32 = finite(text)?;
     if number >= 0.0 {
         Ok(number)
     } else {
@@ -282,7 +304,7 @@ fn non_negative(text: &str) -> Result<f32, String> {
 }
 
 fn field_of_view(text: &str) -> Result<f32, String> {
-    let degrees = finite(text)?;
+    let degrees: f32 = finite(text)?;
     let fits = degrees > 0.0 && degrees < 180.0;
     if fits {
         Ok(degrees)
@@ -305,6 +327,9 @@ mod tests {
     fn values_parse() {
         assert_eq!("1,-2.5, 3".parse(), Ok(Triple([1.0, -2.5, 3.0])));
         assert!("1,2".parse::<Triple>().is_err() && "1,2,nan".parse::<Triple>().is_err());
+        assert!(
+            "0,0,-0".parse::<Direction>().is_err() && "0,1e-300,0".parse::<Direction>().is_ok()
+        );
         assert!(field_of_view("180").is_err());
     }
 }

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use residual_driver::standalone::{self, StandaloneOptions};
+use residual_frontend::note;
 use residual_frontend::output::{check_place, write_executable};
 use residual_frontend::stats::mib;
 
@@ -18,7 +19,7 @@ pub(crate) fn run(args: &BuildArgs) -> Result<()> {
     };
     let program = standalone::build(&plan, &options)?;
     write_executable(&args.output, &program.executable)?;
-    eprintln!(
+    note!(
         "{}: {:.1} MiB, of which {:.1} MiB are the scene's data",
         args.output.display(),
         mib(program.executable.len()),

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use residual_driver::cache::Cache;
+use residual_frontend::out;
 
 use crate::args::CacheCommand;
 
@@ -14,7 +15,7 @@ pub(crate) fn run(command: CacheCommand) -> Result<()> {
         CacheCommand::List => {
             for entry in &entries {
                 let age = entry.used.elapsed().unwrap_or_default().as_secs();
-                println!(
+                out!(
                     "{}  {:>6.1} MiB  used {:>4} h {:>2} min ago  {}",
                     entry.key(),
                     mib(entry.bytes),
@@ -23,7 +24,7 @@ pub(crate) fn run(command: CacheCommand) -> Result<()> {
                     entry.title()
                 );
             }
-            println!(
+            out!(
                 "{} compiled renderers, {:.1} of at most {:.0} MiB (RESIDUAL_CACHE_MIB), in {}",
                 entries.len(),
                 mib(bytes),
@@ -33,7 +34,7 @@ pub(crate) fn run(command: CacheCommand) -> Result<()> {
         }
         CacheCommand::Clear => {
             cache.clear()?;
-            println!(
+            out!(
                 "removed {} compiled renderers, {:.1} MiB",
                 entries.len(),
                 mib(bytes)

@@ -5,6 +5,7 @@ use std::fs;
 use anyhow::{Context, Result};
 use residual_device_cpu::LaneCount;
 use residual_driver::compile::lanes_name;
+use residual_frontend::{note, out};
 use residual_scenegen::emit::rust;
 
 use crate::args::EmitArgs;
@@ -19,13 +20,13 @@ pub(crate) fn run(args: &EmitArgs) -> Result<()> {
         TargetArg::Wgsl => (residual_wgsl::scene_module(&plan.structure), "wgsl"),
     };
     match &args.output {
-        None => print!("{text}"),
+        None => out!("{}", text.trim_end()),
         Some(directory) => {
             fs::create_dir_all(directory)
                 .with_context(|| format!("creating {}", directory.display()))?;
             let path = directory.join(format!("{}.{extension}", plan.name));
             residual_frontend::output::write_atomically(&path, text.as_bytes())?;
-            eprintln!("{}", path.display());
+            note!("{}", path.display());
         }
     }
     Ok(())

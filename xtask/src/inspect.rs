@@ -4,6 +4,7 @@ use anyhow::{Context, Result};
 use residual_device_cpu::LaneCount;
 use residual_driver::price::{self, Price, PriceOptions, PricedTier};
 use residual_frontend::hierarchy_quality;
+use residual_frontend::out;
 use residual_frontend::stats::mib;
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::effects::{Effect, Effects};
@@ -26,11 +27,11 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
         if let Some(prices) = prices {
             report["prices"] = prices.iter().map(prices::json).collect();
         }
-        println!("{report}");
+        out!("{report}");
     } else {
         print(&plan, &effects);
         if let Some(prices) = prices {
-            println!(
+            out!(
                 "\nprices, in parts of the time of rendering:\n{}",
                 prices::table(&prices)
             );
@@ -140,7 +141,7 @@ fn memory_mib(plan: &Plan) -> f64 {
 }
 
 fn print(plan: &Plan, effects: &Effects) {
-    println!(
+    out!(
         "{}: {} triangles, {} lights, camera {:?}, {:.1} MiB of data",
         plan.name,
         plan.data.triangle_count(),
@@ -148,28 +149,28 @@ fn print(plan: &Plan, effects: &Effects) {
         plan.camera_name,
         memory_mib(plan)
     );
-    println!("\neffects in:");
+    out!("\neffects in:");
     for effect in effects.iter() {
         let reasons = shortened(effects.reasons(effect));
-        println!("  {:<22} {reasons}", effect.to_string());
+        out!("  {:<22} {reasons}", effect.to_string());
     }
     let out: Vec<_> = Effect::ALL
         .iter()
         .filter(|&&effect| !effects.has(effect))
         .map(ToString::to_string)
         .collect();
-    println!("\neffects out: {}", out.join(", "));
+    out!("\neffects out: {}", out.join(", "));
     if !plan.dismissed.is_empty() {
-        println!("\nin the file, without effect:");
+        out!("\nin the file, without effect:");
         for dismissed in &plan.dismissed {
-            println!("  {}: {}", dismissed.place, dismissed.reason);
+            out!("  {}: {}", dismissed.place, dismissed.reason);
         }
     }
-    println!("\nplan:");
+    out!("\nplan:");
     for Decision { about, text } in decisions(plan) {
-        println!("  {about:<14} {text}");
+        out!("  {about:<14} {text}");
     }
-    println!("\nprograms (constants, parameters, images, vertex attributes):");
+    out!("\nprograms (constants, parameters, images, vertex attributes):");
     let programs = plan.structure.programs.iter().zip(&plan.materials);
     for (number, (program, materials)) in programs.enumerate() {
         let times = BindingTimes::of(program);
@@ -177,7 +178,7 @@ fn print(plan: &Plan, effects: &Effects) {
             .iter()
             .map(|material| format!("{:?}", material.name))
             .collect();
-        println!(
+        out!(
             "  {number:>3} ({}, {}, {}, {}) {}",
             times.constants,
             times.parameters,

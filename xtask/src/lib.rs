@@ -19,6 +19,7 @@ mod scene;
 use std::process::ExitCode;
 
 use clap::Parser;
+use residual_frontend::note;
 
 use crate::args::{Cli, Command};
 use crate::choices::DeviceArg;
@@ -27,7 +28,7 @@ use crate::choices::DeviceArg;
 pub fn main() -> ExitCode {
     // Bad usage ends in clap, with status 2.
     run(Cli::parse().command).unwrap_or_else(|error| {
-        eprintln!("error: {error:#}");
+        note!("error: {error:#}");
         ExitCode::FAILURE
     })
 }

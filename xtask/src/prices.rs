@@ -1,6 +1,7 @@
 //! The price list of `cargo xtask inspect --measure`, for people and as JSON.
 
 use residual_driver::price::{Price, Step};
+use residual_frontend::note;
 use serde_json::{Value, json};
 
 /// What is going on, while it takes its time.
@@ -9,12 +10,12 @@ pub(crate) fn say(step: Step) {
         Step::Compiling {
             renderer,
             renderers,
-        } => eprintln!("renderer {renderer} of {renderers}"),
+        } => note!("renderer {renderer} of {renderers}"),
         Step::Measured {
             round,
             rounds,
             renders,
-        } => eprintln!("measured {round} of {rounds} rounds of {renders} renders"),
+        } => note!("measured {round} of {rounds} rounds of {renders} renders"),
     }
 }
 

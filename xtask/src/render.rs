@@ -7,6 +7,7 @@ use anyhow::{Context, Result};
 use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView};
 use residual_driver::tiers::{Ledger, Tiers};
 use residual_frontend::hierarchy_quality;
+use residual_frontend::note;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{DeviceReport, Preparation, Statistics};
 
@@ -68,9 +69,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     })?;
 
     if let Some(error) = tiers.failure() {
-        eprintln!(
-            "warning: the renderer could not be compiled; it was interpreted instead: {error:#}"
-        );
+        note!("warning: the renderer could not be compiled; it was interpreted instead: {error:#}");
     }
     let statistics = Statistics {
         scene: &scene::summary(&plan),
@@ -96,7 +95,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             Some(samples) => format!("; it pays for itself after {samples:.0}"),
             None => String::new(),
         };
-        eprintln!("compiled renderer used after {samples} samples per pixel{paid}");
+        note!("compiled renderer used after {samples} samples per pixel{paid}");
     }
     Ok(())
 }

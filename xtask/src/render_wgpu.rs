@@ -9,6 +9,7 @@ use residual_driver::gpu::{GpuDriver, GpuPasses, arithmetic};
 use residual_frontend::hierarchy_quality;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{DeviceReport, Preparation, Statistics, TierReport};
+use residual_frontend::{note, out};
 
 use crate::args::RenderArgs;
 use crate::choices::{MappingArg, TierArg};
@@ -32,13 +33,14 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let gpu = Gpu::open(args.adapter.as_deref())?;
     let probe = gpu.probe()?;
     if !probe.is_exact() && !args.render.quiet {
-        eprintln!(
+        note!(
             "note: {}: images may differ from the processor's in their last bits ({})",
-            gpu.adapter.name, probe.answers
+            gpu.adapter.name,
+            probe.answers
         );
     }
     if gpu.adapter.is_software() && !args.render.quiet {
-        eprintln!(
+        note!(
             "note: {} is a driver that uses the processor; --device cpu is faster",
             gpu.adapter.name
         );
@@ -106,9 +108,9 @@ pub(crate) fn adapters() -> Result<()> {
         bail!(residual_device_wgpu::Error::NoAdapter);
     }
     for (index, adapter) in adapters.iter().enumerate() {
-        println!("{index}: {adapter}");
+        out!("{index}: {adapter}");
         if let Err(error) = measure(&index.to_string()) {
-            println!("    {error}");
+            out!("    {error}");
         }
     }
     Ok(())
@@ -124,7 +126,7 @@ fn measure(adapter: &str) -> Result<(), residual_device_wgpu::Error> {
     let chosen = gpu.probe()?.dialect;
     for dialect in [plain, chosen] {
         let answers = gpu.ask(&Question::all(), dialect)?;
-        println!("    {}: {answers}", arithmetic(&dialect));
+        out!("    {}: {answers}", arithmetic(&dialect));
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
+use residual_frontend::note;
 use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
@@ -39,7 +40,8 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
         &ImportOptions {
             environment,
             variant: args.variant.clone(),
-            time_code: args.time_code,
+            animation: args.animation.clone(),
+            time_code: args.time_code.or(args.frame.map(|frame| frame / args.fps)),
             strict: args.strict,
         },
     )?;
@@ -110,7 +112,7 @@ pub(crate) fn load_with_description(args: &SceneArgs) -> Result<(Plan, SceneDesc
     let (scene, options) = read(args)?;
     let plan = plan(&scene, &options).with_context(|| args.scene.display().to_string())?;
     for warning in scene.warnings.iter().chain(&plan.warnings) {
-        eprintln!(
+        note!(
             "warning: {}: {}: {}",
             args.scene.display(),
             warning.place,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use residual_render::film::Sampling;
 use residual_render::passes::RenderOptions;
@@ -51,7 +52,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = distance)]
     pub reach: Option<f32>,
     /// Threads; 0 is one for each processor
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = RangedU64ValueParser::<usize>::new().range(..=1024))]
     pub threads: usize,
     /// Statistics on standard output
     #[arg(long, value_enum, value_name = "FORMAT")]

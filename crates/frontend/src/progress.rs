@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use residual_render::passes::{Progress, RenderOptions};
 
+use crate::note;
 use crate::precision;
 
 /// Shows how far a render has come.
@@ -47,7 +48,7 @@ impl Reporter {
                 bar.set_message(reached(progress));
             }
             Self::Lines(next) if progress.elapsed >= *next => {
-                eprintln!("{}", line(options, progress));
+                note!("{}", line(options, progress));
                 *next = next_line(progress.elapsed);
             }
             Self::Lines(_) | Self::Quiet => {}

@@ -20,6 +20,7 @@ use crate::process_time;
 use crate::progress::Reporter;
 use crate::rendered::Rendered;
 use crate::stats::Statistics;
+use crate::{note, out};
 
 /// Images on the way are written no more often than that so large a part of the time goes into them.
 const PART_FOR_IMAGES: f64 = 0.02;
@@ -152,14 +153,14 @@ impl<'a> Session<'a> {
         if let Some(path) = self.outputs.iter().find(|path| is_png(path))
             && let Some(message) = self.args.display().note(&statistics.rendered.film.image())
         {
-            eprintln!("warning: {}: {message}", path.display());
+            note!("warning: {}: {message}", path.display());
         }
         if !self.args.quiet {
             self.summary(statistics);
         }
         match self.args.stats {
-            Some(StatsFormat::Json) => println!("{}", statistics.json()),
-            Some(StatsFormat::Text) => print!("{}", statistics.text()),
+            Some(StatsFormat::Json) => out!("{}", statistics.json()),
+            Some(StatsFormat::Text) => out!("{}", statistics.text().trim_end()),
             None => {}
         }
     }
@@ -172,29 +173,29 @@ impl<'a> Session<'a> {
             .map(|path| path.display().to_string())
             .collect();
         let seconds = statistics.rendered.report.elapsed.as_secs_f64();
-        eprintln!(
+        note!(
             "{}: {} samples per pixel in {seconds:.2} s",
             files.join(", "),
             film.samples()
         );
         for line in precision::lines(&statistics.rendered.report.convergence) {
-            eprintln!("{line}");
+            note!("{line}");
         }
         if let Some(mse) = statistics.guaranteed_mse() {
-            eprintln!(
+            note!(
                 "guaranteed with 95 % confidence, since no sample is brighter than white: \
                  an error of at most {} of white, the root of the mean squared error",
                 precision::percent(mse)
             );
         }
         if film.invalid_samples() > 0 {
-            eprintln!(
+            note!(
                 "warning: {} samples were not finite and counted as black; please report this",
                 film.invalid_samples()
             );
         }
         if self.stop.load(Ordering::Relaxed) {
-            eprintln!("stopped; the image is what there was by then");
+            note!("stopped; the image is what there was by then");
         }
     }
 }
@@ -207,7 +208,7 @@ fn stop_on_interrupt() -> Result<Arc<AtomicBool>> {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        eprintln!("\nstopping after this pass; Ctrl-C again to end at once");
+        note!("\nstopping after this pass; Ctrl-C again to end at once");
     })
     .context("listening for Ctrl-C")?;
     Ok(stop)

@@ -135,7 +135,12 @@ fn strided_attributes_are_read_from_one_view() {
     assert_eq!(mesh.positions, SQUARE.map(Vec3::from));
     assert_eq!(mesh.normals, [Vec3::Y; 4]);
     gltf.json["accessors"][1]["byteOffset"] = json!(16);
-    gltf.refused(&["accessors/1", "reach beyond the 96 bytes"]);
+    let scene = gltf.import().unwrap();
+    assert!(warns(&scene, "accessors/1", "reach beyond the 96 bytes"));
+    assert_eq!(scene.meshes[0].normals, [Vec3::Z; 3], "computed");
+
+    gltf.json["accessors"][0]["byteOffset"] = json!(16);
+    gltf.refused(&["accessors/0", "reach beyond the 96 bytes"]);
 }
 
 #[test]
@@ -301,10 +306,15 @@ fn indices_and_accessors_out_of_range_are_refused() {
 }
 
 #[test]
-fn attributes_of_different_lengths_are_refused() {
+fn attributes_of_other_lengths_are_left_out() {
     let mut gltf = Gltf::square();
-    gltf.attribute("NORMAL", "VEC3", F32, &f32_bytes(&[0., 0., 1.]), 1);
-    gltf.refused(&["attributes/NORMAL", "has 1 elements, but POSITION has 4"]);
+    gltf.indices(U8, &[0, 1, 2], 3);
+    gltf.attribute("NORMAL", "VEC3", F32, &f32_bytes(&[0., 1., 0.]), 1);
+    gltf.primitive()["attributes"]["TEXCOORD_0"] = json!(9);
+    let scene = gltf.import().unwrap();
+    let problem = "has 1 elements, but POSITION has 4; the attribute is left out";
+    assert!(warns(&scene, "attributes/NORMAL", problem));
+    assert_eq!(scene.meshes[0].normals, [Vec3::Z; 3], "computed");
 }
 
 fn with_normal_map(gltf: &mut Gltf) {

@@ -292,3 +292,49 @@ fn weights_and_joints_are_animated() {
         "{message}"
     );
 }
+
+#[test]
+fn one_animation_is_chosen_by_its_name_or_index() {
+    let mut gltf = Gltf::square();
+    gltf.primitive()["mode"] = json!(6);
+    let time = gltf.accessor("SCALAR", F32, &f32_bytes(&[0.0]), 1);
+    let moved = |gltf: &mut Gltf, x: f32, name: &str| {
+        let output = gltf.accessor("VEC3", F32, &f32_bytes(&[x, 0.0, 0.0]), 1);
+        json!({
+            "name": name,
+            "samplers": [{ "input": time, "output": output }],
+            "channels": [
+                { "sampler": 0, "target": { "node": 0, "path": "translation" } },
+                // It moves nothing, and costs nothing.
+                { "sampler": 0, "target": { "path": "translation" } },
+            ],
+        })
+    };
+    let walk = moved(&mut gltf, 1.0, "walk");
+    let run = moved(&mut gltf, 2.0, "run");
+    gltf.json["animations"] = json!([walk, run]);
+    let shown = |animation: Option<&str>| {
+        gltf.import_with(&ImportOptions {
+            animation: animation.map(str::to_owned),
+            time_code: Some(0.0),
+            ..ImportOptions::default()
+        })
+    };
+    for (animation, x, warnings) in [
+        (None, 1.0, 1),
+        (Some("run"), 2.0, 0),
+        (Some("1"), 2.0, 0),
+        (Some("walk"), 1.0, 0),
+    ] {
+        let scene = shown(animation).unwrap();
+        assert_eq!(
+            scene.instances[0].transform.translation.x, x,
+            "{animation:?}"
+        );
+        assert_eq!(scene.warnings.len(), warnings, "{:?}", scene.warnings);
+    }
+    let message = shown(Some("jump")).unwrap_err().to_string();
+    for text in ["jump", "0 \"walk\", 1 \"run\"", "--animation"] {
+        assert!(message.contains(text), "{message}");
+    }
+}

@@ -134,10 +134,10 @@ fn children_of_several_parents_are_shown_below_each() {
     assert_eq!(scene.meshes.len(), 1, "read once");
     assert!(warns(&scene, "nodes/3 \"shared\"", "several parents"));
 
-    // Level by level they would be 2⁶⁴.
-    let levels = (0..64).map(|k| json!({ "children": [k + 1, k + 1] }));
+    // Level by level, of two nodes each, they would be 2⁶⁴.
+    let levels = (0..128).map(|k| json!({ "children": [k / 2 * 2 + 2, k / 2 * 2 + 3] }));
     let mut nodes: Vec<Value> = levels.collect();
-    nodes.push(json!({ "mesh": 0 }));
+    nodes.extend([json!({ "mesh": 0 }), json!({ "mesh": 0 })]);
     gltf.json["nodes"] = json!(nodes);
     gltf.refused(&["more than 1048576 nodes"]);
 }

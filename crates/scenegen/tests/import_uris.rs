@@ -50,6 +50,7 @@ fn names_are_read_as_exporters_write_them() {
         ("red%20tile.png", "red%20tile.png"),
         ("red%2520tile.png", "red tile.png"),
         ("gr%C3%BCn.png", "grün.png"),
+        ("gr%FCn.png", "grün.png"),
         ("textures\\a.png", "textures/a.png"),
         (".\\textures\\a.png", "textures/a.png"),
         ("./textures/a.png", "textures/a.png"),

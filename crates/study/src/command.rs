@@ -8,6 +8,7 @@ use clap::{Parser, ValueEnum};
 use indicatif::ProgressBar;
 use residual_frontend::options::Size;
 use residual_frontend::progress::bar_of;
+use residual_frontend::{note, out};
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::CameraChoice;
 
@@ -130,7 +131,7 @@ pub fn main() -> ExitCode {
     match run(&Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            note!("error: {error:#}");
             ExitCode::FAILURE
         }
     }
@@ -140,7 +141,7 @@ fn run(args: &Cli) -> Result<()> {
     let folder = args.folder();
     let scene = import(&args.scene, &ImportOptions::default())?;
     for warning in &scene.warnings {
-        eprintln!(
+        note!(
             "warning: {}: {}: {}",
             args.scene.display(),
             warning.place,
@@ -165,10 +166,10 @@ fn run(args: &Cli) -> Result<()> {
     for agreement in &study.reference.agreements {
         if !agreement.holds() {
             let [first, second] = &agreement.between;
-            eprintln!("warning: {first} and {second} disagree about the reference");
+            note!("warning: {first} and {second} disagree about the reference");
         }
     }
-    println!("{}", folder.join(report::FILES[0]).display());
+    out!("{}", folder.join(report::FILES[0]).display());
     Ok(())
 }
 

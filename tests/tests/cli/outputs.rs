@@ -2,10 +2,38 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::{Command, Stdio};
 
 use residual_tests::pictures::read_exr;
 
 use super::{TRIANGLE, fails, good, render, stderr, workplace};
+
+/// As in `… 2>&1 | head -1`.
+#[test]
+fn an_image_is_not_lost_with_the_reader_of_messages() {
+    let folder = workplace();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_residual-tests"))
+        .current_dir(&folder)
+        .args([
+            "render",
+            "triangle.obj",
+            "--tier",
+            "interpreted",
+            "--size",
+            "16x12",
+            "--spp",
+            "2",
+        ])
+        .args(["--stats", "json", "--output", "image.png"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop((child.stdout.take(), child.stderr.take()));
+    let status = child.wait().unwrap();
+    assert!(status.success(), "{status}");
+    assert!(folder.path().join("image.png").exists());
+}
 
 /// Had rendering begun, the good file, which comes first, would be there.
 #[test]

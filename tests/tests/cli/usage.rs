@@ -21,6 +21,12 @@ fn bad_usage_ends_in_status_2() {
         &["render", "triangle.obj", "--fov", "180"],
         &["render", "triangle.obj", "--eye", "1,2"],
         &["render", "triangle.obj", "--dir", "nan,0,1"],
+        &["render", "triangle.obj", "--dir", "0,0,0"],
+        &["render", "triangle.obj", "--up", "0,-0,0"],
+        &["render", "triangle.obj", "--threads", "100000"],
+        &["render", "cameras.gltf", "--animation", "walk"],
+        &["render", "cameras.gltf", "--fps", "30"],
+        &["render", "cameras.gltf", "--frame", "1", "--time-code", "1"],
         &["render", "triangle.obj", "--time", "-3s"],
         &["render", "triangle.obj", "--lanes", "3"],
         &["render", "triangle.obj", "--max-depth", "0"],
@@ -78,6 +84,9 @@ fn failed_jobs_end_in_status_1_and_say_why() {
         &render(&folder, &["triangle.obj", "--env", "missing.hdr"]),
         &["missing.hdr"],
     );
+    let sideways = ["triangle.obj", "--dir", "0,-2,0", "--up", "0,1,0"];
+    fails(&render(&folder, &sideways), &["to be up", "give another"]);
+    good(render(&folder, &sideways[..3]));
     fails(&run(&folder, &["inspect", "missing.glb"]), &["missing.glb"]);
     for camera in ["right", "1"] {
         good(render(&folder, &["cameras.gltf", "--camera", camera]));

@@ -16,11 +16,12 @@ use residual_frontend::input::{self, Encoding, ReadImage};
 
 use args::CompareArgs;
 use crop::Crop;
+use residual_frontend::{note, out};
 
 /// Status 0 if no limit is exceeded, 1 if one is, 2 if the images could not be compared.
 pub(crate) fn run(args: &CompareArgs) -> ExitCode {
     compare(args).unwrap_or_else(|error| {
-        eprintln!("error: {error:#}");
+        note!("error: {error:#}");
         ExitCode::from(2)
     })
 }
@@ -39,21 +40,21 @@ fn compare(args: &CompareArgs) -> Result<ExitCode> {
     let limits = limits::limits(&args.limits, &comparison);
     let written = pictures::write_all(&args.pictures, &pair, &comparison)?;
     if args.json {
-        println!("{}", json::object(&comparison, &limits));
+        out!("{}", json::object(&comparison, &limits));
     } else {
-        println!("{}", description("reference", &args.reference, &reference));
-        println!("{}", description("test", &args.test, &test));
-        print!("{}", report::table(&comparison));
+        out!("{}", description("reference", &args.reference, &reference));
+        out!("{}", description("test", &args.test, &test));
+        out!("{}", report::table(&comparison).trim_end());
         for line in written {
-            println!("{line}");
+            out!("{line}");
         }
     }
     if let Some(note) = note(reference.encoding, test.encoding) {
-        eprintln!("note: {note}");
+        note!("note: {note}");
     }
     let mut status = ExitCode::SUCCESS;
     for limit in limits.iter().filter(|limit| limit.is_exceeded()) {
-        eprintln!(
+        note!(
             "error: {} is {:.4e}, above {:e} ({}); the worst tile is {} (relMSE {:.3e})",
             limit.metric,
             limit.value,

@@ -14,11 +14,11 @@ pub enum ImportError {
         file: PathBuf,
     },
     /// A file could not be read.
-    #[error("{}: {message}; check that the file exists and can be read", file.display())]
+    #[error("{}: {message}", file.display())]
     Io {
         /// The file.
         file: PathBuf,
-        /// What the operating system said.
+        /// What the operating system said, or what lies there instead.
         message: String,
     },
     /// The content breaks the format's rules or our limits.

@@ -33,6 +33,7 @@ mod missing_uvs;
 mod obj;
 mod options;
 mod origin;
+mod text;
 mod warnings;
 
 pub use error::ImportError;
@@ -53,8 +54,8 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
             if options.variant.is_some() {
                 warnings.push("variant", "OBJ files have no variants; ignored");
             }
-            if options.time_code.is_some() {
-                warnings.push("time code", "OBJ files have no animations; ignored");
+            if options.time_code.is_some() || options.animation.is_some() {
+                warnings.push("animation", "OBJ files have no animations; ignored");
             }
             obj::import(path, &mut warnings)?
         }

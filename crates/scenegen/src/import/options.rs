@@ -9,6 +9,8 @@ pub struct ImportOptions {
     pub environment: Option<EnvironmentOptions>,
     /// The set of materials to show, by its name, of files that have several (KHR_materials_variants).
     pub variant: Option<String>,
+    /// The animation to show a moment of, by its name or index; all together without one.
+    pub animation: Option<String>,
     /// The moment of animations to show, in seconds; without one, files are shown as their nodes stand.
     pub time_code: Option<f64>,
     /// Whether warnings are errors.

@@ -1,6 +1,6 @@
 //! The camera: one of the scene's, one given by the user, or one that frames the scene.
 
-use glam::{Quat, Vec3};
+use glam::{DVec3, Quat, Vec3};
 use residual_render::camera::{CameraRecord, fitted_height};
 use residual_render::program::CameraNode;
 use residual_render::scene_data::SceneData;
@@ -89,10 +89,22 @@ fn framing(bounds: &Bounds, aspect: f32) -> CameraDesc {
     }
 }
 
+/// A direction of any length as one of length 1; zero stays.
+fn unit(direction: DVec3) -> Vec3 {
+    let largest = direction.abs().max_element();
+    (direction / largest).normalize_or_zero().as_vec3()
+}
+
+fn are_parallel(a: DVec3, b: DVec3) -> bool {
+    unit(a).cross(unit(b)).length() < 1e-6
+}
+
 /// The rotation that looks along `dir` with `up` upwards; both may have any length, and be parallel.
 fn look(dir: Vec3, up: Vec3) -> Quat {
     let back = -dir.normalize_or(Vec3::NEG_Z);
-    let right = up.cross(back).normalize_or(back.any_orthonormal_vector());
+    // Maps have north, which is -Z, at the top.
+    let north = Vec3::NEG_Z.cross(back).normalize_or(Vec3::X);
+    let right = up.cross(back).normalize_or(north);
     Quat::from_mat3(&glam::Mat3::from_cols(right, back.cross(right), back))
 }
 
@@ -150,15 +162,23 @@ pub(super) fn choose(
         CameraChoice::View(view) => {
             let default = default();
             // A direction given without "up" means an upright camera, whatever the default's tilt.
-            let up = view.up.map_or(Vec3::Y, Vec3::from);
-            let dir = view.dir.map_or(default.rotation * Vec3::NEG_Z, Vec3::from);
+            let dir = view.dir.map_or(
+                (default.rotation * Vec3::NEG_Z).as_dvec3(),
+                DVec3::from_array,
+            );
+            let up = view.up.map(DVec3::from_array);
+            if let Some(up) = up.filter(|up| are_parallel(*up, dir)) {
+                let [dir, up] = [dir, up].map(|v| v.to_array());
+                return Err(PlanError::UpAlongView { dir, up });
+            }
+            let up = up.unwrap_or(DVec3::Y);
             CameraDesc {
                 name: "given".to_owned(),
                 position: view.eye.map_or(default.position, |eye| {
-                    (Vec3::from(eye).as_dvec3() - scene.origin).as_vec3()
+                    (DVec3::from_array(eye) - scene.origin).as_vec3()
                 }),
                 rotation: if view.dir.is_some() || view.up.is_some() {
-                    look(dir, up)
+                    look(unit(dir), unit(up))
                 } else {
                     default.rotation
                 },

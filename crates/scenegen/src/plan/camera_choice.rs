@@ -16,11 +16,11 @@ pub enum CameraChoice {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct View {
     /// Eye.
-    pub eye: Option<[f32; 3]>,
+    pub eye: Option<[f64; 3]>,
     /// Direction of view, of any length.
-    pub dir: Option<[f32; 3]>,
+    pub dir: Option<[f64; 3]>,
     /// A direction that is up in the image; need not be perpendicular to `dir`.
-    pub up: Option<[f32; 3]>,
+    pub up: Option<[f64; 3]>,
     /// Vertical field of view in degrees.
     pub fov: Option<f32>,
 }

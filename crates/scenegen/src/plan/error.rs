@@ -11,6 +11,14 @@ pub enum PlanError {
         /// What there is.
         available: String,
     },
+    /// The view given has no upright.
+    #[error("the direction that is to be up, {up:?}, is the one of view, {dir:?}; give another")]
+    UpAlongView {
+        /// Of the view.
+        dir: [f64; 3],
+        /// Upwards.
+        up: [f64; 3],
+    },
     /// The scene needs more than 2³² words of something.
     #[error(
         "the scene is too large: its {what} do not fit 32-bit indices; split it or simplify it"

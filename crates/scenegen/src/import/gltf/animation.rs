@@ -8,7 +8,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Animation, Root};
 
 use super::accessors::Accessors;
-use super::lookup::{get, place};
+use super::lookup::{find, place};
 use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
 
@@ -25,9 +25,37 @@ pub(super) struct Animated {
 /// All animated nodes, by their index.
 pub(super) type Pose = HashMap<usize, Animated>;
 
-/// The pose at a time in seconds, which all animations together give; nothing where no time is asked for.
+/// The animation of a name or an index, or all.
+fn chosen(root: &Root, wanted: Option<&str>) -> Result<Vec<usize>, Fault> {
+    let Some(wanted) = wanted else {
+        return Ok((0..root.animations.len()).collect());
+    };
+    let name = |animation: &Animation| animation.name.as_deref() == Some(wanted);
+    let by_index = || {
+        wanted
+            .parse()
+            .ok()
+            .filter(|&index| index < root.animations.len())
+    };
+    let found = root.animations.iter().position(name).or_else(by_index);
+    found.map(|index| vec![index]).ok_or_else(|| {
+        let list = root.animations.iter().enumerate();
+        let list: Vec<String> = list
+            .map(|(index, animation)| place("", index, animation.name.as_deref()).split_off(1))
+            .collect();
+        let available = match list.is_empty() {
+            true => "none".to_owned(),
+            false => list.join(", "),
+        };
+        let problem = format!("there is no animation {wanted:?}; the file has {available}");
+        Fault::new("animations", problem).advise("give one of these to --animation")
+    })
+}
+
+/// The pose at a time in seconds, which the animation asked for, or all together, give; nothing where no time is asked for.
 pub(super) fn pose_at(
     root: &Root,
+    wanted: Option<&str>,
     time: Option<f64>,
     accessors: &mut Accessors<'_>,
     warnings: &mut Warnings,
@@ -35,7 +63,7 @@ pub(super) fn pose_at(
     let mut pose = Pose::new();
     let Some(time) = time else {
         if !root.animations.is_empty() {
-            let reason = "no time is asked for; --time-code shows a moment of them";
+            let reason = "no time is asked for; --time-code or --frame shows a moment of them";
             warnings.dismiss(None, "animations", reason);
         }
         return Ok(pose);
@@ -47,17 +75,37 @@ pub(super) fn pose_at(
             "there are none that can be read; the time code changes nothing",
         );
     }
-    for (index, animation) in root.animations.iter().enumerate() {
+    for index in chosen(root, wanted)? {
+        let animation = &root.animations[index];
         let at = place("animations", index, animation.name.as_deref());
         for (k, channel) in animation.channels.iter().enumerate() {
             let at = format!("{at}/channels/{k}");
-            let sampler = get(&animation.samplers, channel.sampler, "samplers", &at)?;
-            get(&root.nodes, channel.target.node, "nodes", &at)?;
+            let without = "the channel is left out";
+            let samplers = &animation.samplers;
+            let sampler = find(
+                samplers,
+                channel.sampler,
+                "samplers",
+                &at,
+                without,
+                warnings,
+            );
+            let node = find(
+                &root.nodes,
+                channel.target.node,
+                "nodes",
+                &at,
+                without,
+                warnings,
+            );
+            let (Some(sampler), Some(_)) = (sampler, node) else {
+                continue;
+            };
             let node = pose.entry(channel.target.node.value()).or_default();
             if !node.set(channel, sampler, time, accessors, &at)? {
                 warnings.push(
                     at,
-                    "animates what another animation does; the first is shown",
+                    "animates what another animation does; the first is shown (--animation chooses one)",
                 );
             }
         }

@@ -8,7 +8,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Camera, Index};
 
 use super::document::Document;
-use super::lookup::{get, place};
+use super::lookup::{find, place};
 use super::nodes::PlacedNode;
 use crate::desc::{CameraDesc, ClipDistances, Projection};
 use crate::import::error::Fault;
@@ -35,7 +35,11 @@ pub(super) fn read(
     origin: DVec3,
     warnings: &mut Warnings,
 ) -> Result<Option<CameraDesc>, Fault> {
-    let camera = get(&document.root.cameras, index, "cameras", &placed.place)?;
+    let cameras = &document.root.cameras;
+    let without = "it is left out";
+    let Some(camera) = find(cameras, index, "cameras", &placed.place, without, warnings) else {
+        return Ok(None);
+    };
     let at = place("cameras", index.value(), camera.name.as_deref());
     let lens = lens(camera, &at, warnings)?;
     let position = (placed.world.translation - origin).as_vec3();

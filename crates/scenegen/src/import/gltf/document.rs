@@ -8,7 +8,7 @@ use gltf::json::{self, Index, Root};
 
 use super::lookup::{get, place};
 use super::meshopt::Compressed;
-use super::{draco, extensions, glb, root, translations, uri};
+use super::{draco, extensions, glb, json_text, root, translations, uri};
 use crate::import::budget::Budget;
 use crate::import::error::{Fault, ImportError};
 use crate::import::files;
@@ -43,7 +43,8 @@ impl Document {
         } else {
             (bytes.as_slice(), None)
         };
-        let root = root::parse(json).map_err(|fault| fault.in_file(file))?;
+        let json = json_text::read(json, warnings).map_err(|fault| fault.in_file(file))?;
+        let root = root::parse(&json, warnings).map_err(|fault| fault.in_file(file))?;
         extensions::check_required(&root, file)?;
 
         let folder = file.parent().unwrap_or(Path::new(""));
@@ -74,7 +75,7 @@ impl Document {
             decompressed,
             draco: HashMap::new(),
             folder: folder.to_owned(),
-            long_translations: translations::long(root::without_mark(json), &root),
+            long_translations: translations::long(&json, &root),
             root,
             buffers,
         };
@@ -102,7 +103,12 @@ impl Document {
         let start = view.byte_offset.unwrap_or_default().0;
         let bytes = section(buffer, start, view.byte_length.0)
             .map_err(|problem| Fault::new(here, problem))?;
-        Ok((bytes, view.byte_stride.map(|stride| stride.0)))
+        // Zero is what exporters write for elements that follow one another.
+        let stride = view
+            .byte_stride
+            .map(|stride| stride.0)
+            .filter(|&stride| stride > 0);
+        Ok((bytes, stride))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The container of binary glTF files.
 
-use super::root::EXPORT_AS_2;
+use super::root::CONVERT;
 use crate::import::error::Fault;
 
 /// The type of the chunk of JSON, `JSON` in ASCII.
@@ -19,7 +19,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
     let version = word(4).ok_or_else(|| truncated(4))?;
     if version != 2 {
         let problem = format!("the GLB container is of glTF version {version}, not 2");
-        return Err(Fault::new("byte 4", problem).advise(EXPORT_AS_2));
+        return Err(Fault::new("byte 4", problem).advise(CONVERT));
     }
     let length = word(8).ok_or_else(|| truncated(8))? as usize;
     if length > bytes.len() {

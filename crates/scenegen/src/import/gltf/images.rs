@@ -7,10 +7,9 @@ use std::path::Path;
 use gltf::json::{Image, Index};
 
 use super::document::Document;
-use super::lookup::{get, place};
+use super::lookup::{find, place};
 use super::uri::{self, Uri};
 use crate::desc::ImageDesc;
-use crate::import::error::Fault;
 use crate::import::folders::Folders;
 use crate::import::images::{self, Derived, ImageRequest, ImageRole};
 use crate::import::warnings::Warnings;
@@ -46,23 +45,31 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// The index in the scene. An image that holds normals in one of its uses does so in all.
+    /// The index in the scene; `None`, after a warning, where the file has no such image. An image that holds normals in one of its uses does so in all.
     pub(super) fn add(
         &mut self,
         index: Index<Image>,
         role: ImageRole,
         user: &str,
         warnings: &mut Warnings,
-    ) -> Result<usize, Fault> {
+    ) -> Option<usize> {
         let document = self.document;
-        let image = get(&document.root.images, index, "images", user)?;
+        let without = "the texture is left out";
+        let image = find(
+            &document.root.images,
+            index,
+            "images",
+            user,
+            without,
+            warnings,
+        )?;
         let index = index.value();
         let key = (index, role.derived());
         if let Some(&known) = self.indices.get(&key) {
             if role == ImageRole::Normals {
                 self.requests[known].role = role;
             }
-            return Ok(known);
+            return Some(known);
         }
         let at = place("images", index, image.name.as_deref());
         let uri = image.uri.as_deref();
@@ -99,7 +106,7 @@ impl<'a> Images<'a> {
             role,
         });
         self.indices.insert(key, self.requests.len() - 1);
-        Ok(self.requests.len() - 1)
+        Some(self.requests.len() - 1)
     }
 
     /// Decodes them.

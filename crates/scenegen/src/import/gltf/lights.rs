@@ -8,7 +8,7 @@ use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type};
 use gltf::json::validation::Checked;
 
 use super::document::Document;
-use super::lookup::{get, place};
+use super::lookup::{find, place};
 use super::nodes::PlacedNode;
 use crate::desc::{LightDesc, PunctualKind};
 use crate::import::error::Fault;
@@ -28,17 +28,12 @@ pub(super) fn read(
         .as_ref()
         .and_then(|root| root.khr_lights_punctual.as_ref());
     let lights = extension.map_or(&[][..], |extension| &extension.lights);
-    let light = get(
-        lights,
-        index,
-        "extensions/KHR_lights_punctual/lights",
-        &placed.place,
-    )?;
-    let at = place(
-        "extensions/KHR_lights_punctual/lights",
-        index.value(),
-        light.name.as_deref(),
-    );
+    let array = "extensions/KHR_lights_punctual/lights";
+    let without = "it is left out";
+    let Some(light) = find(lights, index, array, &placed.place, without, warnings) else {
+        return Ok(None);
+    };
+    let at = place(array, index.value(), light.name.as_deref());
 
     let position = (placed.world.translation - origin).as_vec3();
     let direction = placed

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use gltf::json::{Index, Material};
 
 use super::document::Document;
-use super::lookup::{get, place};
+use super::lookup::{find, get, place};
 use super::material;
 use super::members::Members;
 use super::textures::Textures;
@@ -56,6 +56,11 @@ impl<'a> Materials<'a> {
         user: &str,
         warnings: &mut Warnings,
     ) -> Result<(usize, &MaterialDesc, [u32; 2]), Fault> {
+        let materials = &self.document.root.materials;
+        let index = index.filter(|&index| {
+            let instead = "the default material is used";
+            find(materials, index, "materials", user, instead, warnings).is_some()
+        });
         let key = index.map(|index| index.value());
         let in_scene = match self.indices.get(&key) {
             Some(&known) => known,

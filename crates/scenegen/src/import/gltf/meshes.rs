@@ -5,7 +5,7 @@ use gltf::json::{Index, Mesh};
 use super::accessors::Accessors;
 use super::deform::Deformation;
 use super::document::Document;
-use super::lookup::{get, place};
+use super::lookup::{find, place};
 use super::materials::Materials;
 use super::{primitives, variants};
 use crate::desc::MeshDesc;
@@ -59,7 +59,11 @@ impl<'a> Meshes<'a> {
         materials: &mut Materials<'_>,
         warnings: &mut Warnings,
     ) -> Result<Vec<usize>, Fault> {
-        let mesh = get(&self.document.root.meshes, index, "meshes", user)?;
+        let meshes = &self.document.root.meshes;
+        let without = "nothing is shown for it";
+        let Some(mesh) = find(meshes, index, "meshes", user, without, warnings) else {
+            return Ok(Vec::new());
+        };
         let index = index.value();
         self.is_used[index] = true;
         if let Some(indices) = &self.indices[index]

@@ -8,7 +8,7 @@ use gltf::json::{Index, Node, Scene, Value};
 use super::animation::{Animated, Pose};
 use super::document::Document;
 use super::extensions;
-use super::lookup::{get, place};
+use super::lookup::{find, get, place};
 use crate::import::error::{Fault, MAKE_SMALLER};
 use crate::import::warnings::Warnings;
 
@@ -105,10 +105,22 @@ pub(super) fn flatten<'a>(
         }
         let world = parent * local;
         let is_visible = is_visible && !is_hidden(node);
-        for &child in node.children.iter().flatten().rev() {
+        let mut seen = HashSet::new();
+        let children = node.children.iter().flatten().filter(|child| {
+            let is_new = seen.insert(child.value());
+            if !is_new {
+                let message = format!("lists its child nodes/{} twice; shown once", child.value());
+                warnings.push(&*place, message);
+            }
+            is_new
+        });
+        let first_child = stack.len();
+        for &child in children {
             get(&root.nodes, child, "nodes", &place)?;
             stack.push(enter(child, world, is_visible));
         }
+        // The last on the stack is placed first.
+        stack[first_child..].reverse();
         if is_first && let Some(used) = &node.extensions {
             extensions::warn_about_others(
                 &used.others,
@@ -139,9 +151,13 @@ fn is_hidden(node: &Node) -> bool {
 fn roots(document: &Document, warnings: &mut Warnings) -> Result<Vec<Index<Node>>, Fault> {
     let root = &document.root;
     let scene: Option<&Scene> = match root.scene {
-        Some(index) => Some(get(&root.scenes, index, "scenes", "scene")?),
-        None => root.scenes.first(),
+        Some(index) => {
+            let instead = "the first is shown";
+            find(&root.scenes, index, "scenes", "scene", instead, warnings)
+        }
+        None => None,
     };
+    let scene = scene.or(root.scenes.first());
     if root.scene.is_none() && root.scenes.len() > 1 {
         let message = format!(
             "the file does not say which of its {} scenes is the default; the first is shown",

@@ -78,25 +78,23 @@ pub(super) fn read(
         count: None,
     };
     let positions: Vec<Vec3> = reader.vectors(positions, "POSITION", Vec3::from_array)?;
-    let mut optional3 = |semantic, name| {
-        attribute(semantic)
-            .map(|index| reader.vectors(index, name, Vec3::from_array))
-            .transpose()
-    };
-    let normals = optional3(Semantic::Normals, "NORMAL")?;
-    let tangents = attribute(Semantic::Tangents)
-        .map(|index| reader.vectors(index, "TANGENT", Vec4::from_array))
-        .transpose()?;
-    let mut uvs = |set| {
-        attribute(Semantic::TexCoords(set))
-            .map(|index| reader.vectors(index, &format!("TEXCOORD_{set}"), Vec2::from_array))
-            .transpose()
-    };
-    let [first, second] = uv_sets;
-    let uvs = [uvs(first)?, uvs(second)?];
-    let colors = attribute(Semantic::Colors(0))
-        .map(|index| reader.colors(index, warnings))
-        .transpose()?;
+    let normals = attribute(Semantic::Normals).and_then(|index| {
+        let normals = reader.vectors(index, "NORMAL", Vec3::from_array);
+        unless_broken(normals, warnings)
+    });
+    let tangents = attribute(Semantic::Tangents).and_then(|index| {
+        let tangents = reader.vectors(index, "TANGENT", Vec4::from_array);
+        unless_broken(tangents, warnings)
+    });
+    let uvs = uv_sets.map(|set| {
+        let index = attribute(Semantic::TexCoords(set))?;
+        let uvs = reader.vectors(index, &format!("TEXCOORD_{set}"), Vec2::from_array);
+        unless_broken(uvs, warnings)
+    });
+    let colors = attribute(Semantic::Colors(0)).and_then(|index| {
+        let colors = reader.colors(index, warnings);
+        unless_broken(colors, warnings)
+    });
 
     let corners = match primitive.indices {
         Some(indices) => accessors.indices(indices, &format!("{at}/indices"))?,
@@ -127,6 +125,17 @@ pub(super) fn read(
         colors,
         triangles,
     })
+}
+
+/// An attribute that the mesh can do without; `None`, after a warning, where it cannot be read.
+fn unless_broken<T>(values: Result<Vec<T>, Fault>, warnings: &mut Warnings) -> Option<Vec<T>> {
+    let warn = |fault: &Fault| {
+        warnings.push(
+            &*fault.place,
+            format!("{}; the attribute is left out", fault.problem),
+        );
+    };
+    values.inspect_err(warn).ok()
 }
 
 struct Attributes<'r, 'a> {

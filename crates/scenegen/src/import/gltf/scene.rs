@@ -46,6 +46,7 @@ fn read(
     let mut scene = SceneDesc::default();
     let pose = animation::pose_at(
         &document.root,
+        options.animation.as_deref(),
         options.time_code,
         &mut reader.accessors,
         warnings,

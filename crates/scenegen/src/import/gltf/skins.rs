@@ -7,7 +7,7 @@ use gltf::json::{Index, Skin};
 
 use super::accessors::Accessors;
 use super::document::Document;
-use super::lookup::{get, place};
+use super::lookup::{find, get, place};
 use super::nodes::PlacedNode;
 use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
@@ -29,7 +29,7 @@ pub(super) fn worlds(nodes: &[PlacedNode<'_>]) -> HashMap<usize, DAffine3> {
     worlds
 }
 
-/// Poses a skin; `None` where it has no joints.
+/// Poses a skin; `None`, after a warning, where there is none or it has no joints.
 pub(super) fn pose(
     document: &Document,
     index: Index<Skin>,
@@ -38,7 +38,11 @@ pub(super) fn pose(
     accessors: &mut Accessors<'_>,
     warnings: &mut Warnings,
 ) -> Result<Option<PosedSkin>, Fault> {
-    let skin = get(&document.root.skins, index, "skins", user)?;
+    let without = "the mesh is shown as it is";
+    let skins = &document.root.skins;
+    let Some(skin) = find(skins, index, "skins", user, without, warnings) else {
+        return Ok(None);
+    };
     let at = place("skins", index.value(), skin.name.as_deref());
     let inverse_bind = match skin.inverse_bind_matrices {
         Some(matrices) => Some(accessors.floats::<16>(matrices, &at)?),

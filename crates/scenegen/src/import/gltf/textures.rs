@@ -8,7 +8,7 @@ use gltf::json::{Image, Index, Texture};
 
 use super::document::Document;
 use super::images::Images;
-use super::lookup::{get, place};
+use super::lookup::{find, place};
 use super::texture_reference::TextureReference;
 use super::uv_sets::UvSets;
 use crate::desc::{Filter, ImageDesc, TextureDesc, TextureUse, UvTransform, Wrap};
@@ -87,7 +87,10 @@ impl<'a> Textures<'a> {
         warnings: &mut Warnings,
     ) -> Result<Option<usize>, Fault> {
         let root = &self.document.root;
-        let texture = get(&root.textures, index, "textures", user)?;
+        let without = "the texture is left out";
+        let Some(texture) = find(&root.textures, index, "textures", user, without, warnings) else {
+            return Ok(None);
+        };
         let at = place("textures", index.value(), texture.name.as_deref());
         let Some(source) = source(texture) else {
             warnings.push(
@@ -96,16 +99,19 @@ impl<'a> Textures<'a> {
             );
             return Ok(None);
         };
-        let image = self.images.add(source, role, &at, warnings)?;
+        let Some(image) = self.images.add(source, role, &at, warnings) else {
+            return Ok(None);
+        };
         let key = (index.value(), role.derived());
         if let Some(&known) = self.indices.get(&key) {
             return Ok(Some(known));
         }
         let default = Sampler::default();
-        let sampler = match texture.sampler {
-            Some(sampler) => get(&root.samplers, sampler, "samplers", &at)?,
-            None => &default,
-        };
+        let sampler = texture.sampler.and_then(|sampler| {
+            let instead = "the default is used";
+            find(&root.samplers, sampler, "samplers", &at, instead, warnings)
+        });
+        let sampler = sampler.unwrap_or(&default);
         let (wrap, filter) = read_sampler(sampler, &at, warnings);
         self.list.push(TextureDesc {
             image,

@@ -4,8 +4,8 @@ use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use crate::import::files;
 use crate::import::folders::Folders;
+use crate::import::{files, text};
 
 /// How many parts of a path of another machine may lead to a file from here.
 const MAX_PARTS: usize = 6;
@@ -58,7 +58,9 @@ pub(super) fn read(uri: &str, folder: &Path, folders: &mut Folders) -> Result<Co
                 .rsplit(';')
                 .next()
                 .is_some_and(|last| last.trim().eq_ignore_ascii_case("base64"));
-            let bytes = if is_base64 {
+            let bytes = if is_base64 && payload.contains('%') {
+                decode_base64(&String::from_utf8_lossy(&percent_decode(payload)))?
+            } else if is_base64 {
                 decode_base64(payload)?
             } else {
                 percent_decode(payload)
@@ -118,15 +120,14 @@ pub(super) fn file_path(
 /// What a name may mean: escapes are decoded, as the specification says; exporters forget to encode, so that a file may
 /// literally be called `a%20b.png`; some encode twice, or add a query.
 fn readings(name: &str) -> Result<Vec<String>, String> {
-    let decode = |name: &str| {
-        String::from_utf8(percent_decode(name)).map_err(|_| format!("{name}: not UTF-8"))
-    };
-    let decoded = decode(name)?;
+    // Escapes of a legacy code page are rarer than those of UTF-8.
+    let decode = |name: &str| text::decode(percent_decode(name));
+    let decoded = decode(name);
     let mut readings = vec![decoded.clone(), name.to_owned()];
-    readings.extend(decode(&decoded).ok());
+    readings.push(decode(&decoded));
     for text in [name, &decoded] {
         if let Some(end) = text.find(['?', '#']) {
-            readings.extend(decode(&text[..end]).ok());
+            readings.push(decode(&text[..end]));
         }
     }
     let mut seen = HashSet::new();

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use encoding_rs::{BIG5, EUC_JP, EUC_KR, GB18030, SHIFT_JIS, WINDOWS_1251};
 
 use super::names::readings;
-use super::text::legacy_bytes;
 use crate::import::folders::Folders;
+use crate::import::text::legacy_bytes;
 
 /// Folders in which exporters put images beside a model.
 const IMAGE_FOLDERS: [&str; 8] = [

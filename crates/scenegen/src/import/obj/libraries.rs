@@ -8,9 +8,8 @@ use super::geometry::{Geometry, NamedMaterial};
 use super::lines::line_place;
 use super::mtl::{self, MtlMaterial};
 use super::names::{readings, relaxed};
-use super::text;
-use crate::import::files;
 use crate::import::warnings::Warnings;
+use crate::import::{files, text};
 
 /// More `mtllib` statements than this are not read.
 const MAX_LIBRARIES: usize = 256;

@@ -35,7 +35,7 @@ mod references;
 mod scene;
 mod smoothing;
 mod statements;
-mod text;
+
 mod textures;
 mod transparency;
 mod vertex_colors;

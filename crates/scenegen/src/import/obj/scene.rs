@@ -10,13 +10,13 @@ use super::libraries::Libraries;
 use super::lines::line_place;
 use super::materials::{Materials, Source};
 use super::part_mesh::PartMeshes;
-use super::{parser, references, text};
+use super::{parser, references};
 use crate::desc::{MeshDesc, SceneDesc};
 use crate::import::budget::Budget;
 use crate::import::error::{Fault, ImportError, MAKE_SMALLER};
 use crate::import::instances::place_mesh;
 use crate::import::warnings::Warnings;
-use crate::import::{files, mesh};
+use crate::import::{files, mesh, text};
 
 /// What is made of a file needs several times its size.
 const MAX_OBJ_BYTES: usize = 256 << 20;

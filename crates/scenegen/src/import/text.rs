@@ -1,4 +1,4 @@
-//! Bytes of OBJ and MTL files as text: neither format says its encoding, and programs write all of them.
+//! Bytes as text: OBJ and MTL do not say their encoding, glTF does, and programs write all of them.
 
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
@@ -37,7 +37,7 @@ fn decode_lines(bytes: &[u8]) -> String {
 }
 
 /// The bytes of text that was decoded as Windows-1252; `None` where it has other characters.
-pub(super) fn legacy_bytes(text: &str) -> Option<Vec<u8>> {
+pub(in crate::import) fn legacy_bytes(text: &str) -> Option<Vec<u8>> {
     let (bytes, _, has_other_characters) = WINDOWS_1252.encode(text);
     (!has_other_characters).then(|| bytes.into_owned())
 }
