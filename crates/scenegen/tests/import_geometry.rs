@@ -282,12 +282,15 @@ fn non_finite_vertices_drop_their_triangles() {
 #[test]
 fn indices_and_accessors_out_of_range_are_refused() {
     let mut gltf = Gltf::square();
-    gltf.indices(U8, &[0, 1, 4], 3);
-    gltf.refused(&[
+    gltf.indices(U8, &[0, 1, 4, 0, 1, 2], 6);
+    let scene = gltf.import().unwrap();
+    let message = "1 of 2 triangles have a vertex beyond the 4";
+    assert!(warns(
+        &scene,
         "meshes/0 \"m\"/primitives/0/indices",
-        "index 4 at 2",
-        "4 vertices",
-    ]);
+        message
+    ));
+    assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
     gltf.primitive()["indices"] = json!(77);
     gltf.refused(&["primitives/0/indices", "accessors/77", "there are 2"]);
 

@@ -103,19 +103,19 @@ pub(super) fn read(
             (0..positions.len() as u32).collect()
         }
     };
-    let out_of_range = corners
-        .iter()
-        .position(|&corner| corner as usize >= positions.len());
-    if let Some(corner) = out_of_range {
-        let problem = format!(
-            "index {} at {corner} is beyond the {} vertices",
-            corners[corner],
+    accessors.budget.charge(corners.len() as u64, 12, at)?;
+    let mut triangles = assemble(topology, &corners, at, warnings);
+    let all = triangles.len();
+    let is_there = |&vertex: &u32| (vertex as usize) < positions.len();
+    triangles.retain(|triangle| triangle.iter().all(is_there));
+    if triangles.len() < all {
+        let message = format!(
+            "{} of {all} triangles have a vertex beyond the {} there are; they are left out",
+            all - triangles.len(),
             positions.len()
         );
-        return Err(Fault::new(format!("{at}/indices"), problem));
+        warnings.push(format!("{at}/indices"), message);
     }
-    accessors.budget.charge(corners.len() as u64, 12, at)?;
-    let triangles = assemble(topology, &corners, at, warnings);
     Ok(RawMesh {
         positions,
         normals,
