@@ -44,7 +44,13 @@ impl Support {
             | "KHR_node_visibility"
             | "KHR_texture_basisu"
             | "KHR_texture_transform" => Self::Imported,
-            "KHR_xmp" | "KHR_xmp_json_ld" | "KHR_animation_pointer" => Self::WithoutEffect,
+            "EXT_feature_metadata"
+            | "EXT_mesh_features"
+            | "EXT_structural_metadata"
+            | "FB_ngon_encoding"
+            | "KHR_animation_pointer"
+            | "KHR_xmp"
+            | "KHR_xmp_json_ld" => Self::WithoutEffect,
             "KHR_materials_anisotropy" => Self::MaterialSwitch("anisotropyStrength"),
             "KHR_materials_clearcoat" => Self::MaterialSwitch("clearcoatFactor"),
             "KHR_materials_diffuse_transmission" => {
@@ -150,7 +156,12 @@ pub(super) fn warn_about_others(
         .keys()
         .filter(|extension| !known.contains(&extension.as_str()))
     {
-        warnings.push(place, format!("{extension} is not supported and ignored"));
+        match Support::of(extension) {
+            Support::WithoutEffect => {
+                warnings.dismiss(None, place, format!("{extension} changes no image"));
+            }
+            _ => warnings.push(place, format!("{extension} is not supported and ignored")),
+        }
     }
 }
 

@@ -152,7 +152,10 @@ fn roots(document: &Document, warnings: &mut Warnings) -> Result<Vec<Index<Node>
     let root = &document.root;
     let scene: Option<&Scene> = match root.scene {
         Some(index) => {
-            let instead = "the first is shown";
+            let instead = match root.scenes.is_empty() {
+                true => "all nodes are shown",
+                false => "the first is shown",
+            };
             find(&root.scenes, index, "scenes", "scene", instead, warnings)
         }
         None => None,
