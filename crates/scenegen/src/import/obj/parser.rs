@@ -26,7 +26,7 @@ pub(super) fn parse(
         parser.statement(statement.line, &keyword, rest, budget, warnings)?;
     }
     parser.warn(warnings);
-    let (origin, positions) = origin::relative(&parser.positions);
+    let (origin, positions) = origin::relative(&parser.positions, &parser.geometry.corners);
     Ok(Geometry {
         origin,
         positions,
