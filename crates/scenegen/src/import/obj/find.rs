@@ -3,13 +3,15 @@
 //! They come from systems that encode names in their own way, and from machines whose folders are not here.
 
 use std::ffi::OsString;
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use encoding_rs::{BIG5, EUC_JP, EUC_KR, GB18030, SHIFT_JIS, WINDOWS_1251};
 
 use super::names::readings;
-use super::text::legacy_bytes;
+use super::text::{self, legacy_bytes};
 use crate::import::folders::Folders;
+use crate::import::percent;
 
 /// Folders in which exporters put images beside a model.
 const IMAGE_FOLDERS: [&str; 8] = [
@@ -76,9 +78,15 @@ impl Finder {
     }
 }
 
-/// A name, and what its bytes may have meant if it comes from a file of a legacy code page.
+/// A name, what it is without percent escapes, of which there may be two layers, and what its bytes may have meant if it
+/// comes from a file of a legacy code page.
 fn encoded_names(name: &str) -> Vec<OsString> {
-    let mut names = vec![OsString::from(name)];
+    let unescaped = |name: &String| {
+        let decoded = text::decode(percent::decode(name));
+        (decoded != *name).then_some(decoded)
+    };
+    let layers = iter::successors(Some(name.to_owned()), unescaped).take(3);
+    let mut names: Vec<OsString> = layers.map(OsString::from).collect();
     if name.is_ascii() {
         return names;
     }
