@@ -6,8 +6,6 @@ use std::ffi::OsString;
 use std::iter;
 use std::path::{Path, PathBuf};
 
-use encoding_rs::{BIG5, EUC_JP, EUC_KR, GB18030, SHIFT_JIS, WINDOWS_1251};
-
 use super::names::readings;
 use super::text::{self, legacy_bytes};
 use crate::import::folders::Folders;
@@ -87,18 +85,8 @@ fn encoded_names(name: &str) -> Vec<OsString> {
     };
     let layers = iter::successors(Some(name.to_owned()), unescaped).take(3);
     let mut names: Vec<OsString> = layers.map(OsString::from).collect();
-    if name.is_ascii() {
-        return names;
-    }
-    let Some(bytes) = legacy_bytes(name) else {
-        return names;
-    };
-    for encoding in [SHIFT_JIS, GB18030, BIG5, EUC_KR, EUC_JP, WINDOWS_1251] {
-        if let Some(name) = encoding.decode_without_bom_handling_and_without_replacement(&bytes) {
-            names.push(OsString::from(name.into_owned()));
-        }
-    }
+    names.extend(text::other_decodings(name).into_iter().map(OsString::from));
     #[cfg(unix)]
-    names.push(std::os::unix::ffi::OsStringExt::from_vec(bytes));
+    names.extend(legacy_bytes(name).map(std::os::unix::ffi::OsStringExt::from_vec));
     names
 }
