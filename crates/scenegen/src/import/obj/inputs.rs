@@ -6,6 +6,9 @@ use super::textures::Textures;
 use crate::desc::{ColorInput, NormalMap, ScalarInput, TextureUse};
 use crate::import::images::{ImageRole, ScalarMap, ScalarSource};
 
+/// What larger values become, of which products and squares would be infinite; the largest radiance of images.
+const LARGEST_COLOR: f32 = 1e30;
+
 /// Reads the inputs of one material.
 pub(super) struct Inputs<'r, 'a> {
     /// What it says.
@@ -69,8 +72,12 @@ impl Inputs<'_, '_> {
             self.statements
                 .warn(format!("{key} has negative values; 0 is used"));
         }
+        if factor.iter().any(|&value| value > LARGEST_COLOR) {
+            let message = format!("{key} has values beyond {LARGEST_COLOR}, which is used");
+            self.statements.warn(message);
+        }
         ColorInput {
-            factor: factor.map(|value| value.max(0.0)),
+            factor: factor.map(|value| value.clamp(0.0, LARGEST_COLOR)),
             texture,
         }
     }
