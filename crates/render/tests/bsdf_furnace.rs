@@ -141,6 +141,18 @@ fn furnace_of_phong() {
     }
 }
 
+/// Up to the exponent that importers allow, 32 bits tell a lobe from its surroundings: it reflects what a mirror does, times
+/// the cosine.
+#[test]
+fn sharp_phong_loses_nothing() {
+    for exponent in [1e4, 1e5, 1e6] {
+        for (cos, albedo) in albedos(&phong(exponent)).into_iter().take(4) {
+            let error = (albedo.value() / cos - 1.0).abs();
+            assert!(error < 2e-3, "{exponent}, cos {cos}: {error}");
+        }
+    }
+}
+
 #[test]
 fn furnace_of_combinations() {
     let base = Diffuse { albedo: WHITE };

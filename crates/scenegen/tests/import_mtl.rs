@@ -1,7 +1,7 @@
 //! MTL files, keyword by keyword.
 
 use glam::Vec4;
-use residual_scenegen::desc::{AlphaMode, MetallicRoughness, SurfaceDesc, Wrap};
+use residual_scenegen::desc::{AlphaMode, MetallicRoughness, SurfaceDesc};
 
 mod common;
 
@@ -154,6 +154,7 @@ fn colours_are_numbers_of_several_kinds() {
         ("0.25 0.5 0.75", [0.25, 0.5, 0.75], ""),
         ("0.5", [0.5; 3], ""),
         ("0,25 0,5 0,75", [0.25, 0.5, 0.75], ""),
+        ("0.25, 0.5, 0.75;", [0.25, 0.5, 0.75], ""),
         ("0.25 0.5", [0.25, 0.5, 0.5], "lacks a third number"),
         ("0.25 0.5 0.75 1", [0.25, 0.5, 0.75], ""),
         ("0.25 x 0.75", [0.8; 3], "not a number"),
@@ -294,20 +295,6 @@ fn normal_maps_get_tangents_and_bump_maps_a_warning() {
 }
 
 #[test]
-fn texture_options_do_not_hide_the_file() {
-    let (tiled, scene) = material("map_Kd -s 2 4 -o 0.5 0.25 -clamp on -mm 0.5 1 kd.png");
-    let texture = phong(&tiled).diffuse.texture.clone().unwrap();
-    assert_eq!(
-        texture.transform,
-        Some([[2., 0., 0.5], [0., 4., 1. - 4. - 0.25]])
-    );
-    assert_eq!(scene.textures[texture.texture].wrap, [Wrap::Clamp; 2]);
-    assert_eq!(red(&scene, texture.texture), 0);
-    assert!(warns(&scene, "a.mtl", "-mm of map_kd is ignored"));
-    assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
-}
-
-#[test]
 fn broken_numbers_cost_one_statement_and_not_the_library() {
     let (material, scene) = material("Kd red\nKs 0.125\nNs nan\nKe 1 2 3");
     assert_eq!(phong(&material).diffuse.factor, [0.8; 3]);
@@ -323,15 +310,4 @@ fn broken_numbers_cost_one_statement_and_not_the_library() {
         scene.warnings
     );
     assert!(warns(&scene, "a.mtl line 1", "ns"), "{:?}", scene.warnings);
-}
-
-#[test]
-fn a_gain_is_a_factor_of_colours_and_other_options_are_said_to_be_ignored() {
-    let (darker, scene) = material("Kd 1 0.5 0\nmap_Kd -mm 0 0.5 white.png");
-    assert_eq!(phong(&darker).diffuse.factor, [0.5, 0.25, 0.0]);
-    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    let (_, scene) = material("map_Kd -imfchan g white.png");
-    assert!(warns(&scene, "m", "-imfchan of map_kd is ignored"));
-    let (_, scene) = material("map_d -mm 0 0.5 white.png");
-    assert!(warns(&scene, "m", "-mm of \"white.png\" is ignored"));
 }

@@ -184,6 +184,16 @@ fn opacity_is_what_exporters_mean() {
         ("Tr 0.25\nnewmtl other\nd 0\nTr 1", 0.75, ""),
         ("d 0", 0.0, ""),
         ("d 0\nmap_Kd kd.png", 1.0, "can only mean that it is opaque"),
+        ("d 0\nmap_d kd.png", 1.0, "the map alone says"),
+        ("d 0.000\nmap_Kd kd.png\nmap_d ks.png", 1.0, "the map alone"),
+        ("d 0.0\nillum 4\nmap_d kd.png", 1.0, "the map alone"),
+        ("d 0\nTr 1\nmap_d kd.png", 1.0, "the map alone"),
+        (
+            "Tr 1\nmap_d kd.png\nnewmtl other\nTr 0",
+            1.0,
+            "the map alone",
+        ),
+        ("d 0.5\nmap_d kd.png", 0.5, ""),
         ("d 100", 1.0, "clamped"),
         ("Tr -1", 1.0, "clamped"),
         ("d nan\nTr 0.25", 0.75, "ignored"),
@@ -204,6 +214,14 @@ fn opacity_is_what_exporters_mean() {
             scene.warnings
         );
     }
+}
+
+/// The whole mesh would be left out.
+#[test]
+fn a_map_beside_d_0_is_what_is_opaque() {
+    let (leaf, _) = material("d 0\nmap_d ks.png");
+    assert_eq!(leaf.alpha_mode, AlphaMode::Blend);
+    assert!(leaf.alpha.texture.is_some());
 }
 
 #[test]

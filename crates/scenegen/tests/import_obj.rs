@@ -265,6 +265,33 @@ fn models_far_from_the_origin_keep_their_details() {
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
 }
 
+/// A helper at the origin, or vertices that nothing uses, do not cost what lies far away its details.
+#[test]
+fn few_vertices_near_the_origin_change_nothing_for_those_far_away() {
+    let survey = "v 4543210.001 5432100.002 0\nv 4543210.002 5432100.002 0\nv 4543210.001 5432100.003 0\nv 4543210.002 5432100.003 0\n";
+    for (before, after, first) in [
+        ("v 0 0 0\n", "f 2 3 4\n", 0),
+        (
+            "",
+            "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\n",
+            0,
+        ),
+        ("", "v 0 0 0\nf 1 2 3\nf 2 3 4\nf 1 2 5\n", 0),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\ng helper\nf 1 2 3\ng model\n",
+            "f 4 5 6\nf 5 6 7\n",
+            1,
+        ),
+    ] {
+        let scene = geometry(&format!("{before}{survey}{after}"));
+        let [a, b, c] = [0, 1, 2].map(|corner| scene.meshes[first].positions[corner]);
+        assert!(
+            ((b - a).length() - 0.001).abs() < 1e-6 && ((c - a).length() - 0.001).abs() < 1e-6,
+            "{before}{after}: {a} {b} {c}"
+        );
+    }
+}
+
 #[test]
 fn statements_come_in_any_order_and_case() {
     let mesh =

@@ -116,6 +116,22 @@ fn numbers_that_are_none_cost_the_faces_at_their_vertex() {
 }
 
 #[test]
+fn polygons_that_cross_themselves_are_said_to_be_fans() {
+    for face in ["1 3 2 4", "1 2 4 3", "1 3 2 4 5", "1 3 5 2 4"] {
+        let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -0.5 0.5 0\n";
+        let scene = geometry(&format!("{corners}f {face}\n"));
+        let message = "1 polygons cross themselves or have too many corners; they are fans";
+        assert!(
+            warns(&scene, "line 6", message),
+            "{face}: {:?}",
+            scene.warnings
+        );
+        let count = face.split(' ').count() - 2;
+        assert_eq!(scene.meshes[0].triangles.len(), count, "{face}");
+    }
+}
+
+#[test]
 fn clouds_of_points_are_said_not_to_be_rendered() {
     let scene = geometry("v 0 0 0\nv 1 0 0\n");
     assert!(

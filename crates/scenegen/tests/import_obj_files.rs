@@ -142,6 +142,40 @@ fn files_named_in_code_pages_are_found() {
 }
 
 /// Files that were packed on a Mac have accents as characters of their own.
+/// Some programs write names as parts of URIs.
+#[test]
+fn percent_escapes_in_names_are_decoded_where_no_file_has_them() {
+    let red_of = |written: &str, files: &[(&str, u8)]| {
+        let mtl = format!("newmtl m\nmap_Kd {written}\n");
+        let folder = folder(&[("a.obj", TRIANGLE), ("a.mtl", &mtl)]);
+        for (name, red) in files {
+            write(folder.path(), name, &png([*red, 0, 0, 255]));
+        }
+        let scene = import(&folder.path().join("a.obj"), &ImportOptions::default()).unwrap();
+        (red(&scene, 0), scene.warnings.len())
+    };
+    let spaced = [("my tex.png", 7)];
+    assert_eq!(red_of("my%20tex.png", &spaced), (7, 0));
+    assert_eq!(red_of("my%2520tex.png", &spaced), (7, 0));
+    assert_eq!(red_of("MY%20TEX.PNG", &spaced), (7, 0));
+    assert_eq!(red_of("-s 2 2 \"my%20tex.png\"", &spaced), (7, 0));
+    assert_eq!(red_of("%C3%96l.png", &[("Öl.png", 7)]), (7, 0));
+    assert_eq!(red_of("%D6l.png", &[("Öl.png", 7)]), (7, 0));
+    assert_eq!(red_of("100%25.png", &[("100%.png", 7)]), (7, 0));
+    // From another machine.
+    let url = "file:///C:/scans/my%20tex.png";
+    assert_eq!(red_of(url, &spaced), (7, 1));
+    // A file that is called so is meant.
+    let both = [("my tex.png", 7), ("my%20tex.png", 8)];
+    assert_eq!(red_of("my%20tex.png", &both), (8, 0));
+    let obj = TRIANGLE.replace("a.mtl", "my%20lib.mtl");
+    let scene = try_import(&[
+        ("a.obj", &*obj),
+        ("my lib.mtl", "newmtl m\nKd 0.5 0.5 0.5\n"),
+    ]);
+    assert_eq!(colors(&scene.unwrap()), [[0.5; 3]]);
+}
+
 #[test]
 fn accents_may_be_composed_in_another_way() {
     let obj = format!("mtllib a.mtl\n{SQUARE}usemtl \u{d6}l\n{FACE}");

@@ -344,6 +344,19 @@ fn scenes_far_away_are_relative_to_a_place_among_them() {
         };
         near(position, [0.0, 2.5, 0.0]);
     }
+    // A helper at the origin of the world is no reason to lose what lies far away.
+    gltf.json["nodes"] = json!([
+        { "children": [1, 2, 3] },
+        { "mesh": 0 },
+        { "mesh": 0, "translation": place },
+        { "mesh": 0, "translation": beside(0.01, 0.0, 0.0) },
+    ]);
+    let scene = gltf.import().unwrap();
+    let [_, first, second] = &scene.instances[..] else {
+        panic!("three")
+    };
+    let between = Vec3::from(second.transform.translation - first.transform.translation);
+    assert!(between.distance(Vec3::new(0.01, 0.0, 0.0)) < 1e-6);
     // Near scenes stay where they are, to the bit.
     gltf.json["nodes"] = json!([{ "mesh": 0, "translation": [20, 0.1, 0] }]);
     let scene = gltf.import().unwrap();

@@ -33,6 +33,7 @@ mod missing_uvs;
 mod obj;
 mod options;
 mod origin;
+mod percent;
 mod text;
 mod warnings;
 

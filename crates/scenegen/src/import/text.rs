@@ -1,6 +1,35 @@
 //! Bytes as text: OBJ and MTL do not say their encoding, glTF does, and programs write all of them.
 
-use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
+use encoding_rs::{
+    BIG5, EUC_JP, EUC_KR, Encoding, GB18030, IBM866, ISO_8859_2, ISO_8859_5, ISO_8859_7, KOI8_R,
+    MACINTOSH, SHIFT_JIS, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1250, WINDOWS_1251, WINDOWS_1252,
+    WINDOWS_1253, WINDOWS_1254, WINDOWS_1255, WINDOWS_1256, WINDOWS_1257, WINDOWS_1258,
+};
+
+/// What bytes may be in that are no UTF-8 and no Windows-1252, or were taken for the latter by another program; the most
+/// telling first, which have no meaning for most bytes.
+const CODE_PAGES: [&Encoding; 20] = [
+    UTF_8,
+    SHIFT_JIS,
+    GB18030,
+    BIG5,
+    EUC_KR,
+    EUC_JP,
+    WINDOWS_1251,
+    WINDOWS_1250,
+    WINDOWS_1253,
+    WINDOWS_1254,
+    WINDOWS_1255,
+    WINDOWS_1256,
+    WINDOWS_1257,
+    WINDOWS_1258,
+    ISO_8859_2,
+    ISO_8859_5,
+    ISO_8859_7,
+    KOI8_R,
+    IBM866,
+    MACINTOSH,
+];
 
 /// Decodes a whole file. A byte order mark decides; without one, text whose every other byte is zero is UTF-16, and a
 /// line that is no UTF-8 becomes Windows-1252, which has a character for every byte: whatever code page was meant,
@@ -40,6 +69,18 @@ fn decode_lines(bytes: &[u8]) -> String {
 pub(in crate::import) fn legacy_bytes(text: &str) -> Option<Vec<u8>> {
     let (bytes, _, has_other_characters) = WINDOWS_1252.encode(text);
     (!has_other_characters).then(|| bytes.into_owned())
+}
+
+/// What the bytes of text that was decoded as Windows-1252 may have meant; nothing where they are ASCII or were not.
+pub(in crate::import) fn other_decodings(text: &str) -> Vec<String> {
+    let bytes = legacy_bytes(text).filter(|bytes| !bytes.is_ascii());
+    let decode = |bytes: &Vec<u8>| -> Vec<String> {
+        let decoded = CODE_PAGES
+            .iter()
+            .filter_map(|page| page.decode_without_bom_handling_and_without_replacement(bytes));
+        decoded.map(|text| text.into_owned()).collect()
+    };
+    bytes.as_ref().map(decode).unwrap_or_default()
 }
 
 /// UTF-16 without a byte order mark. Most characters are ASCII, of which one of the two bytes is zero.

@@ -19,27 +19,18 @@ pub(super) struct Placement {
 
 /// The place that positions are relative to; the origin of the world unless the meshes are far from it.
 pub(super) fn origin(placements: &[Placement], meshes: &[MeshDesc]) -> DVec3 {
-    let boxes: Vec<[DVec3; 2]> = meshes.iter().map(bounds).collect();
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for placement in placements {
-        let corners = boxes[placement.mesh];
-        for k in 0..8 {
-            let side = |axis: usize| corners[k >> axis & 1][axis];
-            let corner = DVec3::new(side(0), side(1), side(2));
-            let corner = placement.world.transform_point3(corner);
-            if corner.is_finite() {
-                (low, high) = (low.min(corner), high.max(corner));
-            }
-        }
-    }
-    origin::choose([low, high])
-}
-
-fn bounds(mesh: &MeshDesc) -> [DVec3; 2] {
-    let positions = mesh.positions.iter().map(|position| position.as_dvec3());
-    positions.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| {
-        [low.min(p), high.max(p)]
-    })
+    let samples_each = (origin::MAX_SAMPLES / placements.len().max(1)).max(1);
+    let corners = placements.iter().flat_map(|placement| {
+        let mesh = &meshes[placement.mesh];
+        let corners = mesh.triangles.as_flattened();
+        let step = corners.len().div_ceil(samples_each).max(1);
+        let used = corners.iter().step_by(step);
+        used.map(move |&corner| {
+            let position = mesh.positions[corner as usize].as_dvec3();
+            placement.world.transform_point3(position)
+        })
+    });
+    origin::choose(corners)
 }
 
 /// The instances, relative to an origin. `named` gives the name and the JSON path of a node.

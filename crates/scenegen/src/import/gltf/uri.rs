@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use crate::import::folders::Folders;
-use crate::import::{files, text};
+use crate::import::{files, percent, text};
 
 /// How many parts of a path of another machine may lead to a file from here.
 const MAX_PARTS: usize = 6;
@@ -59,11 +59,11 @@ pub(super) fn read(uri: &str, folder: &Path, folders: &mut Folders) -> Result<Co
                 .next()
                 .is_some_and(|last| last.trim().eq_ignore_ascii_case("base64"));
             let bytes = if is_base64 && payload.contains('%') {
-                decode_base64(&String::from_utf8_lossy(&percent_decode(payload)))?
+                decode_base64(&String::from_utf8_lossy(&percent::decode(payload)))?
             } else if is_base64 {
                 decode_base64(payload)?
             } else {
-                percent_decode(payload)
+                percent::decode(payload)
             };
             Ok(Content {
                 bytes,
@@ -121,7 +121,7 @@ pub(super) fn file_path(
 /// literally be called `a%20b.png`; some encode twice, or add a query.
 fn readings(name: &str) -> Result<Vec<String>, String> {
     // Escapes of a legacy code page are rarer than those of UTF-8.
-    let decode = |name: &str| text::decode(percent_decode(name));
+    let decode = |name: &str| text::decode(percent::decode(name));
     let decoded = decode(name);
     let mut readings = vec![decoded.clone(), name.to_owned()];
     readings.push(decode(&decoded));
@@ -136,32 +136,6 @@ fn readings(name: &str) -> Result<Vec<String>, String> {
         return Err("the uri is empty".into());
     }
     Ok(readings)
-}
-
-fn percent_decode(text: &str) -> Vec<u8> {
-    let bytes = text.as_bytes();
-    let mut decoded = Vec::with_capacity(bytes.len());
-    let mut at = 0;
-    while at < bytes.len() {
-        let escape = (bytes[at] == b'%')
-            .then(|| bytes.get(at + 1..at + 3))
-            .flatten();
-        match escape.and_then(|hex| Some(hex_digit(hex[0])? << 4 | hex_digit(hex[1])?)) {
-            Some(byte) => {
-                decoded.push(byte);
-                at += 3;
-            }
-            None => {
-                decoded.push(bytes[at]);
-                at += 1;
-            }
-        }
-    }
-    decoded
-}
-
-fn hex_digit(byte: u8) -> Option<u8> {
-    char::from(byte).to_digit(16).map(|digit| digit as u8)
 }
 
 /// RFC 4648 with the standard or the URL alphabet; padding may be missing.
@@ -215,12 +189,5 @@ mod tests {
         assert_eq!(decode_base64("-_8=").unwrap(), [0xfb, 0xff]);
         assert!(decode_base64("Zm9vY").is_err());
         assert!(decode_base64("Zm9*").is_err());
-    }
-
-    #[test]
-    fn percent_escapes_are_decoded_and_broken_ones_kept() {
-        assert_eq!(percent_decode("a%20b"), b"a b");
-        assert_eq!(percent_decode("100%"), b"100%");
-        assert_eq!(percent_decode("%zz%C3%A9"), "%zzé".as_bytes());
     }
 }

@@ -5,6 +5,7 @@ use std::io::Cursor;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
 use super::limits::{LARGEST_RADIANCE, MAX_EXTENT};
+use super::sixteen_bits::of_16_bits;
 use super::unreadable::unreadable;
 use super::{basis, openexr, radiance};
 use crate::desc::{ImageDesc, Texels};
@@ -162,16 +163,6 @@ fn decode_with_image(bytes: &[u8], format: ImageFormat) -> Result<Decoded, Strin
         texels,
         remarks: Vec::new(),
     })
-}
-
-/// Texels of 16 bits a channel: bytes, if that loses nothing.
-fn of_16_bits(texels: &[[u16; 4]]) -> Texels {
-    let is_byte = |&code: &u16| code % 257 == 0;
-    if texels.as_flattened().iter().all(is_byte) {
-        let byte = |code: u16| (code / 257) as u8;
-        return Texels::Rgba8(texels.iter().map(|texel| texel.map(byte)).collect());
-    }
-    Texels::Rgba16(texels.to_vec())
 }
 
 /// Makes numbers of texels of any bits.

@@ -8,7 +8,10 @@ mod radiance;
 #[cfg(test)]
 mod radiance_tests;
 mod requests;
+mod scalar_map;
+mod sixteen_bits;
 mod unreadable;
 
 pub(super) use decode::decode_one;
 pub(super) use requests::{Derived, ImageRequest, ImageRole, decode_all};
+pub(super) use scalar_map::{ScalarMap, ScalarSource};

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use super::decode::{decode, inspect};
+use super::scalar_map::{ScalarMap, ScalarSource};
 use crate::desc::{ImageDesc, Texels};
 use crate::import::budget::Budget;
 use crate::import::warnings::Warnings;
@@ -35,6 +36,8 @@ pub(in crate::import) enum ImageRole {
         /// In [0, 1].
         factor: f32,
     },
+    /// Numbers that no channel holds as they are, in all colours.
+    Scalars(ScalarMap),
 }
 
 /// An image of its own that is made of a file's, which may be read in several ways.
@@ -44,6 +47,8 @@ pub(in crate::import) enum Derived {
     No,
     /// Roughness made with a factor of these bits.
     Roughness(u32),
+    /// Numbers of a source, with a base and a gain of these bits.
+    Scalars(ScalarSource, [u32; 2]),
 }
 
 impl ImageRole {
@@ -52,13 +57,18 @@ impl ImageRole {
         match self {
             Self::Factors | Self::Normals => Derived::No,
             Self::Glossiness { factor } => Derived::Roughness(factor.to_bits()),
+            Self::Scalars(map) => {
+                Derived::Scalars(map.source, [map.base, map.gain].map(f32::to_bits))
+            }
         }
     }
 
     /// Makes of decoded texels what the scene reads.
     fn derive(self, texels: Texels) -> Texels {
-        let Self::Glossiness { factor } = self else {
-            return texels;
+        let factor = match self {
+            Self::Factors | Self::Normals => return texels,
+            Self::Scalars(map) => return map.derive(texels),
+            Self::Glossiness { factor } => factor,
         };
         let roughness = |glossiness: f32| (1.0 - factor * glossiness).clamp(0.0, 1.0);
         match texels {
@@ -96,7 +106,7 @@ impl ImageRole {
                 let code = (255.0 * (1.0 - factor)).round() as u8;
                 [code, code, code, 255]
             }
-            Self::Factors => [255; 4],
+            Self::Factors | Self::Scalars(_) => [255; 4],
             Self::Normals => [128, 128, 255, 255],
         }
     }
@@ -104,7 +114,7 @@ impl ImageRole {
     /// How messages call that texel.
     fn neutral_name(self) -> &'static str {
         match self {
-            Self::Factors | Self::Glossiness { .. } => "white",
+            Self::Factors | Self::Glossiness { .. } | Self::Scalars(_) => "white",
             Self::Normals => "no normal map",
         }
     }

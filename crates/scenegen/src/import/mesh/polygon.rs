@@ -16,6 +16,9 @@ const CONCAVITY_TOLERANCE: f64 = 1e-6;
 /// Corners are on the plane of a polygon up to this part of the root of its area.
 const FLATNESS: f64 = 0.01;
 
+/// A polygon whose area is this part of that of its fan is a bow tie, whose halves go around in opposite directions.
+const BOW_TIE: f64 = 1e-3;
+
 /// How well triangles cover a polygon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::import) enum Coverage {
@@ -71,9 +74,23 @@ impl Triangulator {
         let fan = (1..count.saturating_sub(1)).map(|corner| [0, corner, corner + 1]);
         let area_vector = vector_area(corners);
         let area = area_vector.length();
-        if count <= 3 || area == 0.0 || !area.is_finite() {
+        if count <= 3 || !area.is_finite() {
             triangles.extend(fan);
             return Coverage::Exact;
+        }
+        let fan_area = || -> f64 {
+            let triangle = |triangle: [u32; 3]| triangle.map(|corner| corners[corner as usize]);
+            let areas = fan.clone().map(|of| vector_area(&triangle(of)).length());
+            areas.sum()
+        };
+        if area == 0.0 {
+            // What is a line or a point is covered by nothing.
+            let coverage = match fan_area() > 0.0 {
+                true => Coverage::Approximate,
+                false => Coverage::Exact,
+            };
+            triangles.extend(fan);
+            return coverage;
         }
         let (x, y) = (area_vector / area).any_orthonormal_pair();
         let origin = corners[0].as_dvec3();
@@ -116,6 +133,7 @@ impl Triangulator {
             }
         }
         // Without holes, at least.
+        let is_bow_tie = area < BOW_TIE * fan_area();
         triangles.extend(fan);
         let normal = area_vector / area;
         let height = |corner: &Vec3| (corner.as_dvec3() - origin).dot(normal).abs();
@@ -123,7 +141,7 @@ impl Triangulator {
             .iter()
             .all(|corner| height(corner) <= FLATNESS * area.sqrt());
         // Folded quadrilaterals have no outline; either diagonal is right.
-        match count == 4 && !is_flat {
+        match count == 4 && !is_flat && !is_bow_tie {
             true => Coverage::Exact,
             false => Coverage::Approximate,
         }
@@ -297,10 +315,19 @@ mod tests {
     fn outlines_that_make_no_polygon_are_said_to_be_approximate_or_empty() {
         let crossed = [[0., 0., 0.], [2., 2., 0.], [2., 0., 0.], [0., 1., 0.]].map(Vec3::from);
         assert_eq!(cut(&crossed).1, Coverage::Approximate);
+        // Bow ties, of which both halves are as large, nearly so, or not; in a plane that is none of the axes'.
+        for middle in [1.0, 1.000_01, 1.01, 1.5] {
+            let corners = [[0., 0.], [1., 1.], [1., 0.], [0., middle]];
+            let corners = corners.map(|[x, y]| Vec3::new(x, y, 0.3 * x + 0.7 * y));
+            let (triangles, coverage) = cut(&corners);
+            assert_eq!(coverage, Coverage::Approximate, "{middle}");
+            // As other programs show them.
+            assert_eq!(triangles, [[0, 1, 2], [0, 2, 3]]);
+        }
         let line = [[0., 0., 0.], [1., 0., 0.], [2., 0., 0.], [3., 0., 0.]].map(Vec3::from);
         assert_eq!(
-            cut(&line).0.len(),
-            2,
+            (cut(&line).0.len(), cut(&line).1),
+            (2, Coverage::Exact),
             "without area, which normals deal with"
         );
         assert_eq!(

@@ -1,5 +1,7 @@
 //! Corners of faces: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
 
+use super::numbers;
+
 /// What a corner refers to, in the order of its indices.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Attribute {
@@ -27,7 +29,7 @@ impl Corner {
             if text.is_empty() && part > 0 {
                 continue;
             }
-            let index: i64 = text.parse().ok()?;
+            let index = index(text)?;
             let from_0 = match index {
                 1.. => index - 1,
                 0 => -1,
@@ -55,6 +57,15 @@ impl Corner {
     }
 }
 
+/// A whole number, which some programs print as any other: `1.0`, `1,000000`, `1e0`.
+fn index(text: &str) -> Option<i64> {
+    text.parse().ok().or_else(|| {
+        let number = numbers::parse_exactly(text)?;
+        // Beyond, whole numbers have gaps.
+        (number.fract() == 0.0 && number.abs() < 9e15).then_some(number as i64)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,6 +80,10 @@ mod tests {
         assert_eq!(parse("7//9"), Some([6, NONE, 8]));
         assert_eq!(parse("+7/8/9"), Some([6, 7, 8]));
         assert_eq!(parse("-1/-2/-30"), Some([9, 18, 0]));
+        assert_eq!(parse("1.0"), parse("1"));
+        assert_eq!(parse("7.000000/8.0/9."), parse("7/8/9"));
+        assert_eq!(parse("7,0//9,000"), parse("7//9"));
+        assert_eq!(parse("-1.0/1.2e1"), parse("-1/12"));
         for nowhere in [
             "0",
             "-11",
@@ -85,6 +100,10 @@ mod tests {
             "1/b",
             "1/2/3/4",
             "1.5",
+            "1/2.25",
+            "1e300",
+            "nan",
+            "1,2",
             "9223372036854775808",
             "1\\2",
         ] {

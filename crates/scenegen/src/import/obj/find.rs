@@ -3,13 +3,13 @@
 //! They come from systems that encode names in their own way, and from machines whose folders are not here.
 
 use std::ffi::OsString;
+use std::iter;
 use std::path::{Path, PathBuf};
-
-use encoding_rs::{BIG5, EUC_JP, EUC_KR, GB18030, SHIFT_JIS, WINDOWS_1251};
 
 use super::names::readings;
 use crate::import::folders::Folders;
-use crate::import::text::legacy_bytes;
+use crate::import::percent;
+use crate::import::text::{self, legacy_bytes};
 
 /// Folders in which exporters put images beside a model.
 const IMAGE_FOLDERS: [&str; 8] = [
@@ -76,21 +76,17 @@ impl Finder {
     }
 }
 
-/// A name, and what its bytes may have meant if it comes from a file of a legacy code page.
+/// A name, what it is without percent escapes, of which there may be two layers, and what its bytes may have meant if it
+/// comes from a file of a legacy code page.
 fn encoded_names(name: &str) -> Vec<OsString> {
-    let mut names = vec![OsString::from(name)];
-    if name.is_ascii() {
-        return names;
-    }
-    let Some(bytes) = legacy_bytes(name) else {
-        return names;
+    let unescaped = |name: &String| {
+        let decoded = text::decode(percent::decode(name));
+        (decoded != *name).then_some(decoded)
     };
-    for encoding in [SHIFT_JIS, GB18030, BIG5, EUC_KR, EUC_JP, WINDOWS_1251] {
-        if let Some(name) = encoding.decode_without_bom_handling_and_without_replacement(&bytes) {
-            names.push(OsString::from(name.into_owned()));
-        }
-    }
+    let layers = iter::successors(Some(name.to_owned()), unescaped).take(3);
+    let mut names: Vec<OsString> = layers.map(OsString::from).collect();
+    names.extend(text::other_decodings(name).into_iter().map(OsString::from));
     #[cfg(unix)]
-    names.push(std::os::unix::ffi::OsStringExt::from_vec(bytes));
+    names.extend(legacy_bytes(name).map(std::os::unix::ffi::OsStringExt::from_vec));
     names
 }

@@ -4,7 +4,10 @@ use super::map_statement::MapStatement;
 use super::statements::Statements;
 use super::textures::Textures;
 use crate::desc::{ColorInput, NormalMap, ScalarInput, TextureUse};
-use crate::import::images::ImageRole;
+use crate::import::images::{ImageRole, ScalarMap, ScalarSource};
+
+/// What larger values become, of which products and squares would be infinite; the largest radiance of images.
+const LARGEST_COLOR: f32 = 1e30;
 
 /// Reads the inputs of one material.
 pub(super) struct Inputs<'r, 'a> {
@@ -33,11 +36,22 @@ impl Inputs<'_, '_> {
         black: BlackBesideMap,
     ) -> ColorInput {
         let map = self.statements.map(map_key, ImageRole::Factors);
-        if map.as_ref().is_some_and(|map| map.channel.is_some()) {
-            let message = format!("-imfchan of {map_key} is ignored");
+        let ignored = [
+            (
+                "imfchan",
+                map.as_ref().is_some_and(|map| map.source.is_some()),
+            ),
+            // It would have to be added to every texel.
+            ("mm", map.as_ref().is_some_and(|map| map.base != 0.0)),
+        ];
+        for (option, _) in ignored.into_iter().filter(|(_, is_there)| *is_there) {
+            let message = format!("-{option} of {map_key} is ignored");
             self.statements.warn(message);
         }
-        let gain = map.as_ref().map_or(1.0, |map| map.gain);
+        let gain = match &map {
+            Some(map) if map.base == 0.0 => map.gain,
+            _ => 1.0,
+        };
         let texture = map.map(|map| {
             self.textures
                 .add(&map, ImageRole::Factors, &mut self.statements)
@@ -58,8 +72,12 @@ impl Inputs<'_, '_> {
             self.statements
                 .warn(format!("{key} has negative values; 0 is used"));
         }
+        if factor.iter().any(|&value| value > LARGEST_COLOR) {
+            let message = format!("{key} has values beyond {LARGEST_COLOR}, which is used");
+            self.statements.warn(message);
+        }
         ColorInput {
-            factor: factor.map(|value| value.max(0.0)),
+            factor: factor.map(|value| value.clamp(0.0, LARGEST_COLOR)),
             texture,
         }
     }
@@ -101,29 +119,36 @@ impl Inputs<'_, '_> {
     /// A texture with the channel that is read.
     pub(super) fn scalar_map(&mut self, key: &'static str) -> Option<(TextureUse, usize)> {
         let map = self.statements.map(key, ImageRole::Factors)?;
-        let texture = self.scalar_texture(&map);
-        Some((texture, map.channel.unwrap_or(0)))
+        let source = map.source.unwrap_or(ScalarSource::Channel(0));
+        Some(self.scalar_texture(&map, source))
     }
 
     /// `map_d`. Masks are grey images, except where the colour's own alpha is meant or the image has one.
     pub(super) fn alpha_map(&mut self) -> Option<(TextureUse, usize)> {
         let map = self.statements.map("map_d", ImageRole::Factors)?;
-        let channel = match map.channel {
-            Some(channel) => channel,
-            None if self.statements.name_one_file("map_d", "map_kd") => 3,
-            None if self.textures.look_at(&map, &self.statements).has_alpha => 3,
-            None => 0,
+        let source = match map.source {
+            Some(source) => source,
+            None if self.statements.name_one_file("map_d", "map_kd") => ScalarSource::Channel(3),
+            None if self.textures.look_at(&map, &self.statements).has_alpha => {
+                ScalarSource::Channel(3)
+            }
+            None => ScalarSource::Channel(0),
         };
-        Some((self.scalar_texture(&map), channel))
+        Some(self.scalar_texture(&map, source))
     }
 
-    fn scalar_texture(&mut self, map: &MapStatement) -> TextureUse {
-        if map.gain != 1.0 {
-            let message = format!("-mm of \"{}\" is ignored", map.file);
-            self.statements.warn(message);
-        }
-        self.textures
-            .add(map, ImageRole::Factors, &mut self.statements)
+    /// A channel of the image, or of another one that is made of it.
+    fn scalar_texture(&mut self, map: &MapStatement, source: ScalarSource) -> (TextureUse, usize) {
+        let scalars = ScalarMap {
+            source,
+            base: map.base,
+            gain: map.gain,
+        };
+        let (role, channel) = match scalars.channel() {
+            Some(channel) => (ImageRole::Factors, channel),
+            None => (ImageRole::Scalars(scalars), 0),
+        };
+        (self.textures.add(map, role, &mut self.statements), channel)
     }
 
     /// `norm`, or a bump map that is a map of normals, as some programs write them.

@@ -1,6 +1,6 @@
 //! The material libraries that a file names, and the materials in them by name.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::find::Finder;
@@ -8,8 +8,9 @@ use super::geometry::{Geometry, NamedMaterial};
 use super::lines::line_place;
 use super::mtl::{self, MtlMaterial};
 use super::names::{readings, relaxed};
+use crate::import::files;
+use crate::import::text::{self, other_decodings};
 use crate::import::warnings::Warnings;
-use crate::import::{files, text};
 
 /// More `mtllib` statements than this are not read.
 const MAX_LIBRARIES: usize = 256;
@@ -28,13 +29,15 @@ pub(super) struct Libraries {
     exact: HashMap<String, Vec<usize>>,
     /// The same for names of which only case and spaces may differ.
     relaxed: HashMap<String, Vec<usize>>,
+    /// The same for what names may be in other code pages.
+    decoded: HashMap<String, Vec<usize>>,
 }
 
 /// A material that a name leads to.
 pub(super) struct Found {
     /// Index of [`Libraries::materials`].
     pub(super) index: usize,
-    /// Whether its name is another but for case and spaces.
+    /// Whether its name is another but for case, spaces and code page.
     pub(super) is_guess: bool,
 }
 
@@ -104,6 +107,12 @@ impl Libraries {
             for name in readings(&material.name) {
                 self.exact.entry(name.to_owned()).or_default().push(index);
                 self.relaxed.entry(relaxed(name)).or_default().push(index);
+                for name in other_decodings(name) {
+                    let indices = self.decoded.entry(relaxed(&name)).or_default();
+                    if indices.last() != Some(&index) {
+                        indices.push(index);
+                    }
+                }
             }
             self.materials.push(material);
             self.statements.push(statement);
@@ -129,9 +138,25 @@ impl Libraries {
         let exact = readings(&named.name).find_map(|name| by(&self.exact, name));
         let relaxed = || readings(&named.name).find_map(|name| by(&self.relaxed, &relaxed(name)));
         let found = |index, is_guess| Found { index, is_guess };
+        let elsewhere = || {
+            let name = readings(&named.name).find_map(|name| self.name_across_code_pages(name))?;
+            by(&self.exact, readings(name).next()?)
+        };
         exact
             .map(|index| found(index, false))
-            .or_else(|| relaxed().map(|index| found(index, true)))
+            .or_else(|| relaxed().or_else(elsewhere).map(|index| found(index, true)))
+    }
+
+    /// The name of a material that one of the two files has in another code page, if there is only one that it may be.
+    fn name_across_code_pages(&self, name: &str) -> Option<&str> {
+        let decoded = other_decodings(name);
+        let here = decoded
+            .iter()
+            .filter_map(|name| self.relaxed.get(&relaxed(name)));
+        let there = self.decoded.get(&relaxed(name));
+        let indices = here.chain(there).flatten();
+        let names: BTreeSet<&str> = indices.map(|&index| &*self.materials[index].name).collect();
+        names.first().copied().filter(|_| names.len() == 1)
     }
 }
 

@@ -22,7 +22,7 @@ impl Statement<'_> {
     }
 }
 
-/// The statements of a file, without empty lines and those that are comments.
+/// The statements of a file, without empty lines and those that are comments, but for [`POLYPAINT`].
 pub(super) fn statements(text: &str) -> impl Iterator<Item = Statement<'_>> {
     let mut lines = lines(text).enumerate();
     iter::from_fn(move || {
@@ -31,24 +31,56 @@ pub(super) fn statements(text: &str) -> impl Iterator<Item = Statement<'_>> {
             let mut text = Cow::Borrowed(last);
             let keyword = split_word(last).0.to_ascii_lowercase();
             let is_name = matches!(keyword.as_str(), "o" | "g" | "usemtl" | "newmtl");
-            while let Some(start) = continued(last, is_name) {
-                let Some((_, next)) = lines.next() else { break };
+            while let Some(start) = continued(last, is_name).or_else(|| {
+                let next = numbers_behind_comments(lines.clone().map(|(_, line)| line));
+                (!is_name && next.is_some()).then_some(before_continued_comment(last)?)
+            }) {
                 let text = text.to_mut();
                 text.truncate(text.len() - (last.len() - start.len()));
+                let comments = numbers_behind_comments(lines.clone().map(|(_, line)| line));
+                let Some((_, next)) = lines.nth(comments.unwrap_or(0)) else {
+                    break;
+                };
                 text.push(' ');
                 text.push_str(next);
                 last = next;
             }
             let start = text.trim_start_matches(is_blank);
-            if !start.is_empty() && !start.starts_with('#') {
+            if !start.is_empty() && (!start.starts_with('#') || start.starts_with(POLYPAINT)) {
                 return Some(Statement { line, text });
             }
         }
     })
 }
 
+/// What begins a comment in which ZBrush has colours of vertices.
+pub(super) const POLYPAINT: &str = "#MRGB";
+
+/// What stands before a comment that ends as if it went on in the next line, behind the words of a statement.
+fn before_continued_comment(line: &str) -> Option<&str> {
+    let start = &line[..comment_start(line)?];
+    let is_continued = line.trim_end_matches(is_blank).ends_with('\\');
+    (is_continued && !start.trim_matches(is_blank).is_empty()).then_some(start)
+}
+
+/// How many lines that are comments stand before one that begins with a number, as no statement does.
+fn numbers_behind_comments<'t>(mut lines: impl Iterator<Item = &'t str>) -> Option<usize> {
+    let mut comments = 0;
+    loop {
+        let first = split_word(lines.next()?).0;
+        if first.starts_with('#') && !first.starts_with(POLYPAINT) {
+            comments += 1;
+        } else {
+            let digits = first.trim_start_matches(['-', '+']);
+            return digits
+                .starts_with(|c: char| c.is_ascii_digit())
+                .then_some(comments);
+        }
+    }
+}
+
 /// Lines that end in LF, CR LF or, on old systems, CR.
-fn lines(text: &str) -> impl Iterator<Item = &str> {
+fn lines(text: &str) -> impl Iterator<Item = &str> + Clone {
     let mut rest = text;
     iter::from_fn(move || {
         if rest.is_empty() {
@@ -185,6 +217,41 @@ mod tests {
             "f 1 2 \\\n# a comment\nv 1",
             &[(1, "f", "1 2  # a comment"), (3, "v", "1")],
         );
-        check("v 1\nf 1 \\", &[(1, "v", "1"), (2, "f", "1 \\")]);
+        check("v 1\nf 1 \\", &[(1, "v", "1"), (2, "f", "1")]);
+        check("v 1\nf 1 2 3\\", &[(1, "v", "1"), (2, "f", "1 2 3")]);
+        check("f 1 2 \\\n", &[(1, "f", "1 2")]);
+        check("f 1 2 \\\n\nv 1", &[(1, "f", "1 2"), (3, "v", "1")]);
+    }
+
+    #[test]
+    fn comments_within_a_continued_statement_do_not_end_it() {
+        check(
+            "f 1 2 \\\n# half\n3 4\nv 1",
+            &[(1, "f", "1 2  3 4"), (4, "v", "1")],
+        );
+        check(
+            "f 1 2 \\\n# a\n  # b \\\n3 \\\n# c\n-4",
+            &[(1, "f", "1 2  3  -4")],
+        );
+        check(
+            "f 1 2 # half \\\n3 # more\nv 1",
+            &[(1, "f", "1 2  3 # more"), (3, "v", "1")],
+        );
+        check("f 1 2 # half \\\n# more\n3", &[(1, "f", "1 2  3")]);
+        // What begins with a word is a statement of its own.
+        check(
+            "f 1 2 3 # half \\\nv 1",
+            &[(1, "f", "1 2 3 # half \\"), (2, "v", "1")],
+        );
+        check("# comment \\\n3 4\nv 1", &[(2, "3", "4"), (3, "v", "1")]);
+        check("o a # b \\\n3", &[(1, "o", "a # b \\"), (2, "3", "")]);
+    }
+
+    #[test]
+    fn colours_in_comments_are_statements() {
+        check(
+            "#MRGB ff000000\n# MRGB\n#mrgb\nf 1 \\\n#MRGB ff\n",
+            &[(1, "#mrgb", "ff000000"), (4, "f", "1  #MRGB ff")],
+        );
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::lines::split_word;
 use super::numbers;
 use crate::desc::Wrap;
+use crate::import::images::ScalarSource;
 
 /// A texture's file and the options before it.
 #[derive(Debug, PartialEq)]
@@ -17,9 +18,11 @@ pub(super) struct MapStatement {
     pub(super) offset: [f32; 2],
     /// `-clamp`.
     pub(super) wrap: Wrap,
-    /// `-imfchan`: the channel of a scalar map, 0 red … 3 alpha, if it names one.
-    pub(super) channel: Option<usize>,
-    /// `-mm` without a base: a factor on the values.
+    /// `-imfchan`: what a scalar map is made of, if it says so.
+    pub(super) source: Option<ScalarSource>,
+    /// `-mm`: what is added to all values.
+    pub(super) base: f32,
+    /// `-mm`: a factor on them.
     pub(super) gain: f32,
     /// `-bm`, if it is there.
     pub(super) bump_scale: Option<f32>,
@@ -28,21 +31,22 @@ pub(super) struct MapStatement {
 }
 
 impl MapStatement {
-    /// Reads `-option argument… file name`.
+    /// Reads `-option argument… file name`; options may be written in any case.
     pub(super) fn parse(statement: &str) -> Self {
         let mut map = Self {
             file: String::new(),
             scale: [1.0; 2],
             offset: [0.0; 2],
             wrap: Wrap::Repeat,
-            channel: None,
+            source: None,
+            base: 0.0,
             gain: 1.0,
             bump_scale: None,
             others: BTreeSet::new(),
         };
         let mut rest = statement.trim();
         while let Some((name, arguments, remainder)) = split_option(rest) {
-            map.apply(name, &arguments);
+            map.apply(&name, &arguments);
             rest = remainder;
         }
         // Some programs write options behind the name.
@@ -52,7 +56,7 @@ impl MapStatement {
             && let Some((name, arguments, "")) = split_option(option.trim())
             && arguments.iter().all(|argument| is_value(argument))
         {
-            map.apply(name, &arguments);
+            map.apply(&name, &arguments);
             rest = file.trim();
         }
         map.file = rest.trim().to_owned();
@@ -64,26 +68,32 @@ impl MapStatement {
             "s" => self.scale = [0, 1].map(|index| number(arguments, index, 1.0)),
             "o" => self.offset = [0, 1].map(|index| number(arguments, index, 0.0)),
             "clamp" => {
-                self.wrap = match arguments[0] {
-                    "on" => Wrap::Clamp,
-                    _ => Wrap::Repeat,
+                self.wrap = match is_on(arguments) {
+                    true => Wrap::Clamp,
+                    false => Wrap::Repeat,
                 }
             }
             "imfchan" => {
-                self.channel = match arguments[0] {
-                    "r" => Some(0),
-                    "g" => Some(1),
-                    "b" => Some(2),
-                    "m" => Some(3),
-                    // Luminance, of images that are grey; and depth, which none has.
-                    _ => None,
+                self.source = match arguments[0].to_ascii_lowercase().as_str() {
+                    "r" => Some(ScalarSource::Channel(0)),
+                    "g" => Some(ScalarSource::Channel(1)),
+                    "b" => Some(ScalarSource::Channel(2)),
+                    "m" => Some(ScalarSource::Channel(3)),
+                    "l" => Some(ScalarSource::Luminance),
+                    // Depth, which no image has.
+                    _ => {
+                        self.others.insert(name.to_owned());
+                        None
+                    }
                 }
             }
-            // A base would have to be added to every texel.
-            "mm" if number(arguments, 0, 1.0) == 0.0 => self.gain = number(arguments, 1, 1.0),
+            "mm" => {
+                self.base = number(arguments, 0, 0.0);
+                self.gain = number(arguments, 1, 1.0);
+            }
             "bm" => self.bump_scale = Some(number(arguments, 0, 1.0)),
             // As images are filtered anyway.
-            "blendu" | "blendv" if arguments[0] == "on" => {}
+            "blendu" | "blendv" if is_on(arguments) => {}
             _ => {
                 self.others.insert(name.to_owned());
             }
@@ -91,11 +101,16 @@ impl MapStatement {
     }
 }
 
-/// The name of an option, its arguments, of which there is at least one, and what follows; `None` where the
+fn is_on(arguments: &[&str]) -> bool {
+    arguments[0].eq_ignore_ascii_case("on")
+}
+
+/// The name of an option in lower case, its arguments, of which there is at least one, and what follows; `None` where the
 /// file's name starts.
-fn split_option(text: &str) -> Option<(&str, Vec<&str>, &str)> {
+fn split_option(text: &str) -> Option<(String, Vec<&str>, &str)> {
     let (name, mut rest) = split_word(text.strip_prefix('-')?);
-    let (least, most) = match name {
+    let name = name.to_ascii_lowercase();
+    let (least, most) = match name.as_str() {
         "o" | "s" | "t" => (1, 3),
         "mm" => (2, 2),
         "blendu" | "blendv" | "bm" | "boost" | "cc" | "clamp" | "colorspace" | "imfchan"
@@ -118,7 +133,9 @@ fn split_option(text: &str) -> Option<(&str, Vec<&str>, &str)> {
 
 /// Whether a word can be an option's argument and no part of a file's name.
 fn is_value(word: &str) -> bool {
-    numbers::parse(word).is_some() || matches!(word, "on" | "off") || word.len() == 1
+    numbers::parse(word).is_some()
+        || ["on", "off"].contains(&&*word.to_ascii_lowercase())
+        || word.len() == 1
 }
 
 fn number(arguments: &[&str], index: usize, default: f32) -> f32 {
@@ -161,11 +178,33 @@ mod tests {
     fn the_last_of_equal_options_counts_and_unread_ones_are_named() {
         let map = MapStatement::parse("-s 2 3 -s 4 -imfchan g -imfchan m -mm 1 1 -cc on -o nan a");
         assert_eq!(
-            (map.scale, map.channel, map.offset),
-            ([4.0, 1.0], Some(3), [0.0; 2])
+            (map.scale, map.source, map.offset),
+            ([4.0, 1.0], Some(ScalarSource::Channel(3)), [0.0; 2])
         );
-        assert_eq!(map.others.into_iter().collect::<Vec<_>>(), ["cc", "mm"]);
-        assert_eq!(map.file, "a");
+        assert_eq!(map.others.into_iter().collect::<Vec<_>>(), ["cc"]);
+        assert_eq!((map.file.as_str(), map.base, map.gain), ("a", 1.0, 1.0));
         assert_eq!(MapStatement::parse("-mm 0 0.5 a").gain, 0.5);
+        let luminance = MapStatement::parse("-imfchan l a");
+        assert_eq!(luminance.source, Some(ScalarSource::Luminance));
+        let depth = MapStatement::parse("-imfchan z a");
+        assert_eq!((depth.source, depth.others.len()), (None, 1));
+    }
+
+    #[test]
+    fn options_are_read_in_any_case() {
+        let upper =
+            "-S 2 3 -O 0.25 -CLAMP ON -Bm 0.5 -IMFCHAN L -Mm 0.1 0.2 -BlendU On -CC on A.png";
+        let map = MapStatement::parse(upper);
+        let lower = upper.replace("A.png", "").to_lowercase() + "A.png";
+        assert_eq!(map, MapStatement::parse(&lower));
+        assert_eq!((map.wrap, map.scale), (Wrap::Clamp, [2.0, 3.0]));
+        assert_eq!(map.others.into_iter().collect::<Vec<_>>(), ["cc"]);
+        let behind = MapStatement::parse("a.png -BM 0.5 -Clamp On");
+        assert_eq!(
+            (behind.file.as_str(), behind.bump_scale),
+            ("a.png", Some(0.5))
+        );
+        // A name is no option.
+        assert_eq!(MapStatement::parse("-Dash.png").file, "-Dash.png");
     }
 }

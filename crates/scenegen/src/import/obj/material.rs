@@ -1,5 +1,7 @@
 //! One MTL material: its statements as a description.
 
+use std::ops::RangeInclusive;
+
 use super::illumination::Illumination;
 use super::inputs::{BlackBesideMap, Inputs, constant, uniform};
 use super::statements::Statements;
@@ -20,6 +22,13 @@ const DEFAULT_EXPONENT: f32 = 30.0;
 
 /// The exponent where a map of exponents is white and no number stands beside it: the largest that the format knows.
 const LARGEST_EXPONENT: f32 = 1000.0;
+
+/// Beyond this exponent, cosines of 32 bits do not tell the lobe from its surroundings: at 10⁸ it loses light, and at 10⁹
+/// two thirds of it, while at 10⁶ it reflects what a mirror does, to 10⁻⁴, and is a twelfth of a degree wide.
+const SHARPEST_EXPONENT: f32 = 1e6;
+
+/// The indices of refraction that the format knows; those of materials are from 1 to 5.
+const INDICES_OF_REFRACTION: RangeInclusive<f32> = 0.001..=10.0;
 
 /// `illum` 3, 5 and 8 are a mirror from this exponent on. Programs write `illum` 3 for every metal, and exponents up to
 /// 1000 for how smooth it is.
@@ -106,11 +115,16 @@ fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> Su
             .statements
             .warn(format!("Ns {factor} is negative; 0 is used"));
     }
+    if factor > SHARPEST_EXPONENT && has_specular {
+        inputs.statements.warn(format!(
+            "Ns {factor} is sharper than can be rendered; {SHARPEST_EXPONENT} is used"
+        ));
+    }
     SurfaceDesc::Phong(PhongSurface {
         diffuse,
         specular,
         exponent: ScalarInput {
-            factor: factor.max(0.0),
+            factor: factor.clamp(0.0, SHARPEST_EXPONENT),
             texture: exponent_map,
         },
     })
@@ -138,8 +152,9 @@ fn metallic_roughness(inputs: &mut Inputs<'_, '_>, base_color: ColorInput) -> Su
                 .warn(format!("{key}: {what} is not rendered"));
         }
     }
-    let ior = match inputs.statements.number("ni") {
-        Some(ior) if ior > 1.0 => ior,
+    // 1 is written for every material.
+    let ior = match ior(inputs) {
+        ior if ior > 1.0 => ior,
         _ => DEFAULT_IOR,
     };
     SurfaceDesc::MetallicRoughness(MetallicRoughness {
@@ -155,14 +170,17 @@ fn metallic_roughness(inputs: &mut Inputs<'_, '_>, base_color: ColorInput) -> Su
 }
 
 fn ior(inputs: &mut Inputs<'_, '_>) -> f32 {
-    match inputs.statements.number("ni") {
-        Some(ior) if ior > 0.0 => ior,
-        Some(ior) => {
-            inputs
-                .statements
-                .warn(format!("Ni {ior} is not positive; {DEFAULT_IOR} is used"));
-            DEFAULT_IOR
-        }
-        None => DEFAULT_IOR,
+    let Some(given) = inputs.statements.number("ni") else {
+        return DEFAULT_IOR;
+    };
+    let (least, largest) = INDICES_OF_REFRACTION.into_inner();
+    let (used, problem) = match given {
+        ..=0.0 => (DEFAULT_IOR, "is not positive"),
+        _ => (given.clamp(least, largest), "is none of a material"),
+    };
+    if used != given {
+        let message = format!("Ni {given} {problem}; {used} is used");
+        inputs.statements.warn(message);
     }
+    used
 }

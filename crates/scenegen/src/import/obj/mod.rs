@@ -31,6 +31,7 @@ mod occurrences;
 mod origin;
 mod parser;
 mod part_mesh;
+mod polypaint;
 mod references;
 mod scene;
 mod smoothing;

@@ -7,9 +7,10 @@ use glam::{DVec3, Vec2, Vec3};
 use super::corner::Corner;
 use super::geometry::{Face, Geometry, NamedMaterial, Part};
 use super::lines::{comment_start, line_place, statements, words};
+use super::numbers::SEPARATORS;
 use super::occurrences::Occurrences;
 use super::vertex_colors::VertexColors;
-use super::{numbers, origin};
+use super::{numbers, origin, polypaint};
 use crate::import::budget::Budget;
 use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
@@ -25,8 +26,9 @@ pub(super) fn parse(
         let (keyword, rest) = statement.split();
         parser.statement(statement.line, &keyword, rest, budget, warnings)?;
     }
+    parser.paint_last_vertices();
     parser.warn(warnings);
-    let (origin, positions) = origin::relative(&parser.positions);
+    let (origin, positions) = origin::relative(&parser.positions, &parser.geometry.corners);
     Ok(Geometry {
         origin,
         positions,
@@ -39,6 +41,8 @@ struct Parser {
     /// But for the positions.
     geometry: Geometry,
     positions: Vec<DVec3>,
+    /// Of a block of `#MRGB`, for the vertices before it.
+    polypaint: Vec<[f32; 3]>,
     part_name: String,
     material: Option<usize>,
     smoothing_group: u32,
@@ -55,6 +59,9 @@ struct Faults {
     bad_corners: Occurrences,
     bad_vertices: Occurrences,
     decimal_commas: Occurrences,
+    separators: Occurrences,
+    bad_polypaint: Occurrences,
+    lost_polypaint: usize,
     bad_texture_coordinates: Occurrences,
     bad_normals: Occurrences,
     weights: Occurrences,
@@ -75,6 +82,7 @@ impl Parser {
     ) -> Result<(), Fault> {
         match keyword {
             "v" => {
+                self.paint_last_vertices();
                 budget.charge(1, size_of::<(DVec3, Vec3)>() as u64, keyword)?;
                 self.vertex(line, rest);
                 if self.geometry.colors.is_some() {
@@ -97,6 +105,12 @@ impl Parser {
                     self.faults.bad_normals.note(line);
                 }
                 self.geometry.normals.push(normal);
+            }
+            "#mrgb" => {
+                budget.charge(rest.len() as u64 / 8, VertexColors::BYTES, keyword)?;
+                if polypaint::read(rest, &mut self.polypaint).is_none() {
+                    self.faults.bad_polypaint.note(line);
+                }
             }
             // `fo` is what faces were called once.
             "f" | "fo" => self.face(line, rest, budget)?,
@@ -139,11 +153,26 @@ impl Parser {
         Ok(())
     }
 
+    /// The words of a statement without what separates numbers from one another.
+    fn fields<'t>(
+        &mut self,
+        line: usize,
+        rest: &'t str,
+    ) -> impl Iterator<Item = &'t str> + use<'t> {
+        let may_have_separators = rest.bytes().any(|byte| matches!(byte, b',' | b';'));
+        if may_have_separators && words(rest).any(|word| word.ends_with(SEPARATORS)) {
+            self.faults.separators.note(line);
+        }
+        words(rest)
+            .map(|word| word.trim_end_matches(SEPARATORS))
+            .filter(|word| !word.is_empty())
+    }
+
     /// The first numbers of a statement, NaN where there is none; those from index `required` on may be missing and
     /// are 0.
     fn numbers<const N: usize>(&mut self, line: usize, rest: &str, required: usize) -> [f64; N] {
-        let mut words = words(rest);
-        std::array::from_fn(|index| match words.next() {
+        let mut fields = self.fields(line, rest);
+        std::array::from_fn(|index| match fields.next() {
             Some(word) => self.number(line, word),
             None if index < required => f64::NAN,
             None => 0.0,
@@ -157,13 +186,26 @@ impl Parser {
         numbers::parse_exactly(word).unwrap_or(f64::NAN)
     }
 
+    /// A block of colours, which ends where vertices begin, is for as many vertices before it.
+    fn paint_last_vertices(&mut self) {
+        if !self.polypaint.is_empty() {
+            let vertices = self.positions.len();
+            let lost = self.geometry.colors.paint_last(&self.polypaint, vertices);
+            self.faults.lost_polypaint += lost;
+            self.polypaint.clear();
+        }
+    }
+
     /// Three numbers, and behind them nothing, a weight or a colour.
     fn vertex(&mut self, line: usize, rest: &str) {
         let position = DVec3::from(self.numbers(line, rest, 3));
         if position.is_nan() {
             self.faults.bad_vertices.note(line);
         }
-        let mut further = words(rest).skip(3);
+        let mut further = words(rest)
+            .map(|word| word.trim_end_matches(SEPARATORS))
+            .filter(|word| !word.is_empty())
+            .skip(3);
         let color = match [
             further.next(),
             further.next(),
@@ -194,6 +236,7 @@ impl Parser {
     }
 
     fn face(&mut self, line: usize, rest: &str, budget: &mut Budget) -> Result<(), Fault> {
+        let fields = self.fields(line, rest);
         let geometry = &mut self.geometry;
         let counts = [
             self.positions.len(),
@@ -201,14 +244,26 @@ impl Parser {
             geometry.normals.len(),
         ];
         let first_corner = geometry.corners.len();
-        for word in words(rest) {
-            match Corner::parse(word, counts) {
-                Some(corner) => geometry.corners.push(corner),
-                None => {
-                    geometry.corners.truncate(first_corner);
-                    self.faults.bad_corners.note(line);
-                    return Ok(());
+        for word in fields {
+            let parsed = match Corner::parse(word, counts) {
+                Some(corner) => {
+                    geometry.corners.push(corner);
+                    Some(())
                 }
+                // Some separate corners by commas alone.
+                None if word.contains(SEPARATORS) => {
+                    self.faults.separators.note(line);
+                    word.split(SEPARATORS).try_for_each(|word| {
+                        geometry.corners.push(Corner::parse(word, counts)?);
+                        Some(())
+                    })
+                }
+                None => None,
+            };
+            if parsed.is_none() {
+                geometry.corners.truncate(first_corner);
+                self.faults.bad_corners.note(line);
+                return Ok(());
             }
         }
         let corner_count = geometry.corners.len() - first_corner;
@@ -291,6 +346,14 @@ impl Parser {
                 "numbers have a comma, which is read as a decimal point",
             ),
             (
+                &faults.separators,
+                "lines have commas or semicolons behind numbers, which are ignored",
+            ),
+            (
+                &faults.bad_polypaint,
+                "lines of #MRGB are not of 8 hexadecimal digits for each vertex; the rest of them is ignored",
+            ),
+            (
                 &faults.bad_texture_coordinates,
                 "texture coordinates lack a number",
             ),
@@ -309,6 +372,13 @@ impl Parser {
             ),
         ] {
             occurrences.warn(message, warnings);
+        }
+        if faults.lost_polypaint > 0 {
+            let lost = faults.lost_polypaint;
+            warnings.push(
+                "#MRGB",
+                format!("{lost} colours are for no vertex and ignored"),
+            );
         }
         let first_unknown = faults.first_unknown.escape_debug();
         let message = format!("statements such as \"{first_unknown}\" are not read");

@@ -148,8 +148,8 @@ fn build(
         ));
     }
     scene.origin = geometry.origin;
-    let message =
-        "polygons cross themselves or have too many corners; triangles do not cover them exactly";
+    let message = "polygons cross themselves or have too many corners; they are fans of triangles around their first corner, \
+        which may cover more than their outlines";
     meshes.approximate.warn(message, warnings);
     materials.dismiss_unused(warnings);
     (scene.materials, scene.textures, scene.images) = materials.finish(warnings);

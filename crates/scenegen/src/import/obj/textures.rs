@@ -9,7 +9,7 @@ use super::map_statement::MapStatement;
 use super::statements::Statements;
 use crate::desc::{Filter, ImageDesc, Texels, TextureDesc, TextureUse, UvTransform};
 use crate::import::files;
-use crate::import::images::{self, ImageRequest, ImageRole};
+use crate::import::images::{self, Derived, ImageRequest, ImageRole};
 use crate::import::warnings::Warnings;
 
 /// Textures in use, with their images still encoded.
@@ -17,8 +17,8 @@ pub(super) struct Textures<'a> {
     folder: &'a Path,
     list: Vec<TextureDesc>,
     requests: Vec<ImageRequest<'static>>,
-    /// From paths, or the names of missing files, to indices of `requests`.
-    image_indices: BTreeMap<PathBuf, usize>,
+    /// From paths, or the names of missing files, and what is made of them to indices of `requests`.
+    image_indices: BTreeMap<(PathBuf, Derived), usize>,
     /// By path, what has been looked at.
     looks: BTreeMap<PathBuf, Looks>,
     finder: Finder,
@@ -96,7 +96,9 @@ impl<'a> Textures<'a> {
             user.warn(format!("\"{file}\" is not there; \"{shown}\" is used"));
         }
         let path = location.map(|location| location.path);
-        let key = path.clone().unwrap_or_else(|| PathBuf::from(file));
+        let named = path.clone().unwrap_or_else(|| PathBuf::from(file));
+        let extension = extension(&named).map(str::to_owned);
+        let key = (named, role.derived());
         if let Some(&known) = self.image_indices.get(&key) {
             return known;
         }
@@ -108,7 +110,7 @@ impl<'a> Textures<'a> {
             name: file.to_owned(),
             place: format!("{} \"{file}\"", user.place),
             bytes,
-            extension: extension(&key).map(str::to_owned),
+            extension,
             role,
         });
         self.image_indices.insert(key, self.requests.len() - 1);

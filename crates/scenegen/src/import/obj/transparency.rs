@@ -109,11 +109,18 @@ fn opacity(inputs: &mut Inputs<'_, '_>) -> Option<f32> {
             d
         }
     };
-    if opacity == 0.0 && inputs.statements.has("map_kd") {
-        let message =
-            "a material with a texture that nobody could see can only mean that it is opaque";
-        inputs.statements.warn(message);
-        return Some(1.0);
-    }
-    Some(opacity)
+    // Nobody writes maps for what cannot be seen: 3ds Max and others write 0 where a map says how opaque a surface is, and
+    // scanning programs where a texture does.
+    let maps = &mut inputs.statements;
+    let meaning = match opacity {
+        0.0 if maps.has("map_d") => {
+            "map_d would have no effect, as d is 0: the map alone says what is opaque"
+        }
+        0.0 if maps.has("map_kd") => {
+            "a material with a texture that nobody could see can only mean that it is opaque"
+        }
+        _ => return Some(opacity),
+    };
+    maps.warn(meaning);
+    Some(1.0)
 }

@@ -26,6 +26,18 @@ impl VertexColors {
         }
     }
 
+    /// Gives the last vertices of so many colours of their own, which are display values in [0, 1]. Returns how many
+    /// there are too many.
+    pub(super) fn paint_last(&mut self, colors: &[[f32; 3]], vertices: usize) -> usize {
+        let count = colors.len().min(vertices);
+        self.0.resize(vertices.max(self.0.len()), None);
+        let painted = &mut self.0[vertices - count..vertices];
+        for (color, &paint) in painted.iter_mut().zip(colors) {
+            *color = Some(paint.into());
+        }
+        colors.len() - count
+    }
+
     /// That of a vertex as stored in the file.
     pub(super) fn get(&self, vertex: usize) -> Option<Vec3> {
         *self.0.get(vertex)?
