@@ -19,6 +19,21 @@ record! {
     }
 }
 
+/// The largest number below 1 that samplers give.
+pub const BELOW_ONE: f64 = 1.0 - 1.0 / (1 << 24) as f64;
+
+/// What was drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Outcome<D: Domain> {
+    /// Its index.
+    pub index: D::U,
+    /// Its density.
+    pub density: D::F,
+    /// What is left of the number that decided, stretched to [0, 1): uniform again, whatever was drawn, and as evenly spread
+    /// over each outcome as the numbers were over all.
+    pub rest: D::F,
+}
+
 /// A table in a buffer: its entries go on to the buffer's end.
 #[derive(Clone, Copy, Debug)]
 pub struct AliasTable {
@@ -35,15 +50,18 @@ impl AliasTable {
         index * d.uint(AliasEntry::WORDS) + d.uint(self.first)
     }
 
-    /// The outcome for a slot and a number in [0, 1), the slot itself or its alias, and its density.
+    /// The outcome for a slot and a number in [0, 1): the slot itself or its alias.
     #[inline(always)]
-    pub fn resolve<D: Domain>(self, d: D, slot: D::U, u: D::F) -> (D::U, D::F) {
+    pub fn resolve<D: Domain>(self, d: D, slot: D::U, u: D::F) -> Outcome<D> {
         let entry = AliasEntry::load_at(d, self.buffer, self.entry(d, slot));
         let stays = d.lt(u, entry.threshold);
-        (
-            d.select_u(stays, slot, entry.alias),
-            d.select(stays, entry.density, entry.alias_density),
-        )
+        let within = d.select(stays, u, u - entry.threshold);
+        let width = d.select(stays, entry.threshold, d.lit(1.0) - entry.threshold);
+        Outcome {
+            index: d.select_u(stays, slot, entry.alias),
+            density: d.select(stays, entry.density, entry.alias_density),
+            rest: d.min(within / width, d.lit(BELOW_ONE)),
+        }
     }
 
     /// The density of an outcome.

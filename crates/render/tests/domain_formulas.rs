@@ -115,7 +115,7 @@ macro_rules! light_formula {
                 let surface = Surface::new(d, Attributes::default(), &hit, vec3(u, v, d.lit(-0.3)));
                 let sample = self.0.sample(d, d.uint(0), surface.point, [a, b, c]);
                 let mut results = light_words(d, sample);
-                results.extend(light_words(d, light::sample(d, &(self.0, ()), surface.point, [c, a, b, u])));
+                results.extend(light_words(d, light::sample(d, &(self.0, ()), surface.point, [c, a, u])));
                 if let Some(seen) = self.0.background(d, sample.wi) {
                     results.extend(words(d, vector(seen.radiance).into_iter().chain([seen.pdf])));
                 }

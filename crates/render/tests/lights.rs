@@ -4,6 +4,7 @@ use residual_render::domain::{Scalar, Uint};
 use residual_render::light::{
     self, Area, AreaRecord, Directional, LightKind, Point, PunctualRecord, Spot, power_heuristic,
 };
+use residual_render::sampler::{SampleKey, Sampler, Sobol};
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{Attributes, PathRay};
 use residual_render::texture::Const;
@@ -271,12 +272,7 @@ fn lights_are_picked_by_their_weights() {
     let (mut counts, n) = (vec![0.0; 7], 400_000.0);
     let total: f64 = weights.iter().sum();
     for _ in 0..n as usize {
-        let sample = light::sample(
-            d,
-            &(Directional, ()),
-            surface.point,
-            [rng.unit(), 0.5, 0.5, 0.5],
-        );
+        let sample = light::sample(d, &(Directional, ()), surface.point, [rng.unit(), 0.5, 0.5]);
         let light = sample.radiance.x as usize - 1;
         counts[light] += 1.0;
         assert!((f64::from(sample.pdf) - weights[light] / total).abs() < 1e-7);
@@ -295,7 +291,7 @@ fn lights_are_picked_by_their_weights() {
     set_lights(&mut data, &[second], &[1.0]);
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
-    let sample = light::sample(d, &(Directional, (Point, ())), floor(d).point, [0.5; 4]);
+    let sample = light::sample(d, &(Directional, (Point, ())), floor(d).point, [0.5; 3]);
     assert!(!sample.infinite && (f64::from(sample.radiance.x) - 1.75).abs() < 1e-6);
 }
 
@@ -335,4 +331,61 @@ fn power_heuristic_weighs_to_one() {
             "{a} {b}: {sum}"
         );
     }
+}
+
+/// Well-spread points are well spread over each light. With numbers of their own for the place, counts would differ from the
+/// expected ones by ten.
+#[test]
+fn places_on_each_light_are_as_evenly_spread_as_the_points() {
+    let mut data = scene(&[FLOOR]);
+    let records: Vec<_> = (0..3).map(|_| punctual([0.0, 0.0, 1.0], 1.0)).collect();
+    set_lights(&mut data, &records, &[1.0, 2.0, 5.0]);
+    let buffers = data.buffers();
+    let d = Scalar::new(&buffers);
+    let points = 1024;
+    let mut counts = [[0; 4]; 3];
+    for index in 0..points {
+        let key = SampleKey {
+            pixel: Uint(77),
+            index: Uint(index),
+        };
+        let picked = light::pick(d, Sobol.pair(d, key, Uint(5)));
+        let light = picked.record.0 / light::LIGHT_WORDS;
+        let [x, y] = picked.place.map(|x| usize::from(x >= 0.5));
+        counts[light as usize][2 * x + y] += 1;
+    }
+    for (counts, weight) in counts.iter().zip([1.0, 2.0, 5.0]) {
+        let expected = f64::from(points) * weight / 8.0 / 4.0;
+        for count in counts {
+            assert!(
+                (f64::from(*count) - expected).abs() <= 4.0,
+                "{counts:?} {expected}"
+            );
+        }
+    }
+}
+
+/// Where picking leaves no digits of the first number, places are uniform all the same.
+#[test]
+fn places_are_uniform_on_each_of_many_lights() {
+    let mut data = scene(&[FLOOR]);
+    let lights = 1 << 20;
+    set_lights(
+        &mut data,
+        &vec![punctual([0.0, 0.0, 1.0], 1.0); lights],
+        &vec![1.0; lights],
+    );
+    let buffers = data.buffers();
+    let d = Scalar::new(&buffers);
+    let mut rng = Rng::new(161);
+    let mut counts = vec![0.0; 256];
+    let n = 200_000;
+    for _ in 0..n {
+        let place = light::pick(d, [rng.unit(), rng.unit()]).place;
+        assert!(place.iter().all(|x| (0.0..1.0).contains(x)));
+        let [x, y] = place.map(|x| (x * 16.0) as usize);
+        counts[16 * x + y] += 1.0;
+    }
+    let expected = vec![f64::from(n) / 256.0; 256];
+    assert!(chi_squared(&counts, &expected) > 0.001, "{counts:?}");
 }

@@ -5,7 +5,7 @@
 //! that shines can be sampled; the position within the texel is uniform.
 
 use super::{Background, LightKind, LightSample, pick_probability};
-use crate::alias_table::{AliasEntry, AliasTable};
+use crate::alias_table::{AliasEntry, AliasTable, Outcome};
 use crate::domain::{Buffer, Domain};
 use crate::math::elementary::{atan2, sincos_turns};
 use crate::math::vec3::vec3;
@@ -115,6 +115,11 @@ fn solid_angle_pdf<D: Domain>(d: D, over_image: D::F, sin_theta: D::F) -> D::F {
 
 impl<D: Domain> LightKind<D> for Environment {
     #[inline(always)]
+    fn takes_three(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
     fn sample(&self, d: D, _: D::U, _: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D> {
         let header = EnvironmentHeader::uniform(d);
         let [columns, rows] = header.size(d);
@@ -125,7 +130,11 @@ impl<D: Domain> LightKind<D> for Environment {
             d.min(d.floor(y), rows - one),
         );
         let slot = d.to_uint(row) * header.width + d.to_uint(column);
-        let (texel, density) = TEXELS.resolve(d, slot, u[2]);
+        let Outcome {
+            index: texel,
+            density,
+            ..
+        } = TEXELS.resolve(d, slot, u[2]);
         let (row, column) = row_and_column(d, texel, header.width);
         let uv = [
             (column + (x - d.floor(x))) / columns,

@@ -64,6 +64,11 @@ pub struct Background<D: Domain> {
 
 /// A kind of light.
 pub trait LightKind<D: Domain> {
+    /// Whether [`sample`](LightKind::sample) takes a third number.
+    fn takes_three(&self) -> bool {
+        false
+    }
+
     /// Samples the light whose record starts at word `record` for the point `from`.
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D>;
 
@@ -104,6 +109,8 @@ impl<U: crate::domain::Unsigned> KindIndex<U> {
 pub trait LightKinds<D: Domain> {
     /// There are no lights at all.
     fn is_empty(&self) -> bool;
+    /// Whether any kind takes a third number.
+    fn takes_three(&self) -> bool;
     /// Samples a light of kind `kind`.
     fn sample(
         &self,
@@ -146,6 +153,10 @@ impl<D: Domain> LightKinds<D> for () {
         true
     }
     #[inline(always)]
+    fn takes_three(&self) -> bool {
+        false
+    }
+    #[inline(always)]
     fn sample(
         &self,
         d: D,
@@ -185,6 +196,10 @@ impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
     #[inline(always)]
     fn is_empty(&self) -> bool {
         false
+    }
+    #[inline(always)]
+    fn takes_three(&self) -> bool {
+        self.0.takes_three() || self.1.takes_three()
     }
     #[inline(always)]
     fn sample(
@@ -231,6 +246,9 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
     fn is_empty(&self) -> bool {
         self.is_empty()
     }
+    fn takes_three(&self) -> bool {
+        self.iter().any(|kind| kind.takes_three())
+    }
     fn sample(
         &self,
         d: D,
@@ -267,7 +285,8 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
     }
 }
 
-/// Picks a light with `u[0]` and samples it with the other three numbers. The density includes the pick.
+/// Picks a light and samples it, both with the first two numbers; the third is for kinds that
+/// [take three](LightKinds::takes_three). The density includes the pick.
 ///
 /// It is never inlined: all programs of a scene share one copy, which halves what there is to compile and to keep in the
 /// instruction cache. The values that enter and leave through memory cost less than the sampling by far.
@@ -276,7 +295,7 @@ pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
     d: D,
     lights: &L,
     from: Vec3<D::F>,
-    u: [D::F; 4],
+    u: [D::F; 3],
 ) -> LightSample<D> {
     d.vectorize(
         #[inline(always)]
@@ -285,9 +304,10 @@ pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
                 kind,
                 record,
                 probability,
-            } = pick(d, u[0]);
+                place: [x, y],
+            } = pick(d, [u[0], u[1]]);
             let kind = KindIndex { kind, first: 0 };
-            let sample = lights.sample(d, kind, record, from, [u[1], u[2], u[3]]);
+            let sample = lights.sample(d, kind, record, from, [x, y, u[2]]);
             // A delta light's "density" of 1 turns into the probability of its pick; the estimator is the same.
             LightSample {
                 pdf: sample.pdf * probability,

@@ -1,6 +1,6 @@
 //! The list of lights, and how one of them is picked: by an alias table.
 
-use crate::alias_table::{AliasEntry, AliasTable};
+use crate::alias_table::{AliasEntry, AliasTable, BELOW_ONE, Outcome};
 use crate::domain::{Buffer, Domain};
 use crate::record::{BufferRecord, record};
 use crate::scene_data::SceneData;
@@ -51,21 +51,35 @@ pub struct Pick<D: Domain> {
     pub record: D::U,
     /// The probability of the pick.
     pub probability: D::F,
+    /// Two numbers in [0, 1) for a place on the light.
+    pub place: [D::F; 2],
 }
 
-/// Picks a light.
+/// Picks a light with the first of two numbers, and makes of both two numbers for a place on it.
+///
+/// Points that are well spread over the square are so over each light, too, for a light takes a strip of the square, or a few.
+/// Numbers of their own for the place would be spread over all lights' samples together, and at random over those of each.
 #[inline(always)]
-pub fn pick<D: Domain>(d: D, u: D::F) -> Pick<D> {
+pub fn pick<D: Domain>(d: D, [u, v]: [D::F; 2]) -> Pick<D> {
     let header = PickHeader::uniform_at(d, Buffer::LightAlias, 0);
     let count = d.to_real(header.count);
     let scaled = u * count;
     let slot = d.min(d.floor(scaled), count - d.lit(1.0));
-    let (light, probability) = PICKS.resolve(d, d.to_uint(slot), scaled - slot);
-    let (kind, record) = find(d, light);
+    // Among thousands of lights few digits are left of the 24: digits of the other number follow them.
+    let digits = v * d.lit(4096.0);
+    let digits = (digits - d.floor(digits)) * count;
+    let within = d.fma(digits, d.lit(1.0 / (1 << 24) as f64), scaled - slot);
+    let Outcome {
+        index,
+        density,
+        rest,
+    } = PICKS.resolve(d, d.to_uint(slot), d.min(within, d.lit(BELOW_ONE)));
+    let (kind, record) = find(d, index);
     Pick {
         kind,
         record,
-        probability,
+        probability: density,
+        place: [rest, v],
     }
 }
 

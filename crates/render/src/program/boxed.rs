@@ -112,6 +112,7 @@ entered!(LightKind {
     fn sample(d, record: D::U, from: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D>;
     fn background(d, dir: Vec3<D::F>) -> Option<Background<D>>;
     fn density(d, record: D::U, ray: &PathRay<D>, seen: &Surface<D>) -> Option<D::F>;
+    const fn takes_three() -> bool;
 });
 entered!(Camera {
     fn ray(d, film: [D::F; 2]) -> PathRay<D>;

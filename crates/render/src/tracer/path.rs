@@ -12,8 +12,8 @@ use crate::surface::PathRay;
 /// Pairs of random numbers that a vertex uses.
 const PAIRS: u32 = 4;
 /// Which pair is for what. Those of vertex 0, the camera, come first.
-const LIGHT_PICK: u32 = 0;
-const LIGHT_PLACE: u32 = 1;
+const LIGHT: u32 = 0;
+const LIGHT_TEXEL: u32 = 1;
 const BSDF_DIRECTION: u32 = 2;
 const LOBE_AND_ROULETTE: u32 = 3;
 
@@ -93,9 +93,12 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
         if !bsdf.kind().scatters || lights.is_empty() {
             return None;
         }
-        let [pick, extra] = self.pair(d, path, LIGHT_PICK);
-        let place = self.pair(d, path, LIGHT_PLACE);
-        let sample = light::sample(d, lights, surface.point, [pick, place[0], place[1], extra]);
+        let [x, y] = self.pair(d, path, LIGHT);
+        let third = match lights.takes_three() {
+            true => self.pair(d, path, LIGHT_TEXEL)[0],
+            false => d.lit(0.0),
+        };
+        let sample = light::sample(d, lights, surface.point, [x, y, third]);
 
         let wo = surface.frame.to_local(d, vertex.wo);
         let wi = surface.frame.to_local(d, sample.wi);

@@ -35,7 +35,7 @@ pub(crate) fn estimate<L: for<'a> LightKinds<Scalar<'a>>>(
     for _ in 0..n {
         let [a, b, c] = rng.unit3();
         mean.add(irradiance(
-            &light::sample(d, lights, surface.point, [a, b, c, rng.unit()]),
+            &light::sample(d, lights, surface.point, [a, b, c]),
             normal,
         ));
     }

@@ -44,7 +44,7 @@ impl Formula for Lights {
             None => {
                 let lights = scene.lights();
                 (
-                    light::sample(d, lights, surface.point, u),
+                    light::sample(d, lights, surface.point, [u[0], u[1], u[3]]),
                     light::LightKinds::background(lights, d, dir),
                 )
             }
