@@ -38,8 +38,13 @@ const BRADFORD: DMat3 = DMat3::from_cols_array_2d(&[
 impl Primaries {
     /// Whether they are those of Rec. 709.
     pub(super) fn are_rec_709(&self) -> bool {
-        let mut pairs = self.all().into_iter().zip(REC_709.all());
-        pairs.all(|(a, b)| is_near(a, b))
+        self.are_near(&REC_709, TOLERANCE)
+    }
+
+    /// Whether all chromaticities differ by less than that.
+    pub(super) fn are_near(&self, other: &Self, tolerance: f64) -> bool {
+        let mut pairs = self.all().into_iter().zip(other.all());
+        pairs.all(|(a, b)| is_near(a, b, tolerance))
     }
 
     /// From red, green and blue to CIE XYZ, with a Y of 1 for white; `None` for what cannot be primaries.
@@ -69,7 +74,11 @@ impl Primaries {
     pub(super) fn to_rec_709(self) -> Option<DMat3> {
         let to_xyz = self.to_xyz()?;
         let axes = [self.red, self.green, self.blue];
-        let adaptation = match axes.into_iter().zip(XYZ).all(|(a, b)| is_near(a, b)) {
+        let adaptation = match axes
+            .into_iter()
+            .zip(XYZ)
+            .all(|(a, b)| is_near(a, b, TOLERANCE))
+        {
             true => DMat3::IDENTITY,
             false => exchange_white(self.white, REC_709.white),
         };
@@ -92,8 +101,8 @@ impl Primaries {
     }
 }
 
-fn is_near(a: [f64; 2], b: [f64; 2]) -> bool {
-    (a[0] - b[0]).abs() < TOLERANCE && (a[1] - b[1]).abs() < TOLERANCE
+fn is_near(a: [f64; 2], b: [f64; 2], tolerance: f64) -> bool {
+    (a[0] - b[0]).abs() < tolerance && (a[1] - b[1]).abs() < tolerance
 }
 
 fn white_xyz([x, y]: [f64; 2]) -> DVec3 {
