@@ -142,12 +142,7 @@ impl Header {
                     .push(format!("{variable} {value:?} is not positive; ignored"));
             }
             ("GAMMA", Some(&[1.0])) => {}
-            ("PRIMARIES", _) => {
-                if !self.set_primaries(value) {
-                    self.remarks
-                        .push(format!("PRIMARIES {value:?} make no sense; ignored"));
-                }
-            }
+            ("PRIMARIES", _) => self.set_primaries(value),
             ("GAMMA", _) => {
                 self.remarks
                     .push(format!("{variable} {value:?} is ignored"));
@@ -158,29 +153,32 @@ impl Header {
     }
 
     /// CIE xy of red, green, blue and white. Those of displays, and of Radiance, which differ little, change nothing, and
-    /// zeros say nothing. Returns whether they make sense.
-    fn set_primaries(&mut self, value: &str) -> bool {
-        let numbers = value.split_whitespace().map(|word| word.parse::<f64>());
-        let Ok(numbers) = numbers.collect::<Result<Vec<f64>, _>>() else {
-            return false;
+    /// zeros say nothing.
+    fn set_primaries(&mut self, value: &str) {
+        let numbers = value.split_whitespace().map(|word| word.parse().ok());
+        let numbers: Vec<f64> = numbers.collect::<Option<_>>().unwrap_or_default();
+        let primaries = match numbers.as_chunks() {
+            (&[red, green, blue, white], []) => Primaries {
+                red,
+                green,
+                blue,
+                white,
+            },
+            _ => return self.ignore_primaries(value),
         };
-        if numbers.iter().all(|&number| number == 0.0) {
-            return true;
-        }
-        let (&[red, green, blue, white], []) = numbers.as_chunks() else {
-            return false;
-        };
-        let primaries = Primaries {
-            red,
-            green,
-            blue,
-            white,
-        };
-        if primaries.are_near(&REC_709, PRIMARIES_TOLERANCE) {
-            return true;
+        let is_silent = numbers.iter().all(|&number| number == 0.0);
+        if is_silent || primaries.are_near(&REC_709, PRIMARIES_TOLERANCE) {
+            return;
         }
         self.to_rec_709 = primaries.to_rec_709();
-        self.to_rec_709.is_some()
+        if self.to_rec_709.is_none() {
+            self.ignore_primaries(value);
+        }
+    }
+
+    fn ignore_primaries(&mut self, value: &str) {
+        self.remarks
+            .push(format!("PRIMARIES {value:?} make no sense; ignored"));
     }
 
     /// `-Y height +X width` and its seven relatives: the first is the axis along which scanlines follow one another. Y
