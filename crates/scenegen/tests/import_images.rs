@@ -338,6 +338,7 @@ fn radiance_pictures_are_read_whoever_wrote_them() {
         ("#?RADIANCE\n\n-Y 1 +X 2\n", [64.0, 128.0]),
         ("#?RGBE\nGAMMA=2.2\nEXPOSURE=4\n\n-Y 1 +X 2\n", [16.0, 32.0]),
         ("#?RGBE\n\n-Y 1 -X 2\n", [128.0, 64.0]),
+        ("FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n", [64.0, 128.0]),
     ] {
         let mut bytes = header.as_bytes().to_vec();
         bytes.extend([64, 0, 0, 136, 128, 0, 0, 136]);
@@ -348,5 +349,9 @@ fn radiance_pictures_are_read_whoever_wrote_them() {
             expected
         );
         assert_eq!(warns(&scene, "sky.hdr", "GAMMA"), header.contains("GAMMA"));
+        assert_eq!(
+            warns(&scene, "sky.hdr", "lacks its first line"),
+            !header.starts_with("#?")
+        );
     }
 }

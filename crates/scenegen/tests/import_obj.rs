@@ -292,6 +292,33 @@ fn few_vertices_near_the_origin_change_nothing_for_those_far_away() {
     }
 }
 
+/// One place only can have its details.
+#[test]
+fn details_that_are_lost_are_said() {
+    let near = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 3 4\no far\n";
+    for (corners, is_lost) in [
+        (
+            "v 4543210 5432100 0\nv 4543211 5432100 0\nv 4543210 5432101 0\n",
+            true,
+        ),
+        (
+            "v 4543210 5432100 0\nv 4553210 5432100 0\nv 4543210 5442100 0\n",
+            false,
+        ),
+        ("v 100 100 0\nv 101 100 0\nv 100 101 0\n", false),
+        ("v 0 0 0\nv 4543210 5432100 0\nv 4543211 5432100 0\n", false),
+    ] {
+        let scene = geometry(&format!("{near}{corners}f 5 6 7\n"));
+        let message = "1 objects are so small and so far from most others";
+        assert_eq!(
+            warns(&scene, "\"far\"", message),
+            is_lost,
+            "{corners}: {:?}",
+            scene.warnings
+        );
+    }
+}
+
 #[test]
 fn statements_come_in_any_order_and_case() {
     let mesh =

@@ -77,6 +77,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
     if scene.instances.is_empty() {
         warnings.push("scene", "has nothing to render");
     }
+    origin::warn_about_lost_details(&scene, &mut warnings);
     scene.dismissed = warnings.take_dismissed();
     scene.warnings = warnings.into_vec();
     if let Err(violation) = scene.validate() {

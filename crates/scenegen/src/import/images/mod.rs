@@ -3,13 +3,18 @@
 mod basis;
 mod decode;
 mod limits;
+mod luminance_chroma;
 mod openexr;
+mod primaries;
 mod radiance;
 #[cfg(test)]
 mod radiance_tests;
 mod requests;
 mod scalar_map;
 mod sixteen_bits;
+mod subsampled;
+#[cfg(test)]
+mod subsampled_tests;
 mod unreadable;
 
 pub(super) use decode::decode_one;

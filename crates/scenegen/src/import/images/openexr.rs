@@ -6,7 +6,9 @@ use exr::meta::header::Header;
 use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel};
 
 use super::limits::{LARGEST_RADIANCE, MAX_EXTENT};
+use super::primaries::{Primaries, REC_709};
 use super::unreadable::unreadable;
+use super::{luminance_chroma, subsampled};
 
 /// Parts of the names of layers that hold what a camera has seen, in other words than that of the light in it.
 const PICTURES: [&str; 6] = ["beauty", "combined", "rgba", "rgb", "color", "main"];
@@ -24,6 +26,9 @@ pub(super) struct Layout {
     /// Of the first stored pixel in the picture.
     position: [i64; 2],
     channels: Channels,
+    /// Some channels have fewer pixels than others.
+    is_subsampled: bool,
+    primaries: Primaries,
     /// What infinities become.
     pub(super) largest: f32,
     /// What had to be guessed.
@@ -40,6 +45,8 @@ struct Channels {
 #[derive(Debug)]
 enum Color {
     Rgb([String; 3]),
+    /// (red − luminance) / luminance, luminance, and the same of blue.
+    LuminanceChroma([String; 3]),
     /// All three are the same.
     Gray(String),
 }
@@ -101,14 +108,39 @@ pub(super) fn layout(bytes: &[u8]) -> Result<Layout, String> {
             LARGEST_RADIANCE
         },
         channels,
+        is_subsampled: subsampled::is_subsampled(header),
+        primaries: primaries(header, &mut remarks),
         remarks,
     })
+}
+
+/// The primaries of colours; those of Rec. 709, as the format says, where a file gives none.
+fn primaries(header: &Header, remarks: &mut Vec<String>) -> Primaries {
+    let Some(given) = &header.shared_attributes.chromaticities else {
+        return REC_709;
+    };
+    let [red, green, blue, white] =
+        [given.red, given.green, given.blue, given.white].map(|xy| [xy.x(), xy.y()].map(f64::from));
+    let primaries = Primaries {
+        red,
+        green,
+        blue,
+        white,
+    };
+    if primaries.to_rec_709().is_none() {
+        remarks
+            .push("has chromaticities that no primaries have; those of Rec. 709 are used".into());
+        return REC_709;
+    }
+    primaries
 }
 
 impl Channels {
     fn names(&self) -> Vec<&str> {
         match &self.color {
-            Color::Rgb(names) => names.iter().map(String::as_str).collect(),
+            Color::Rgb(names) | Color::LuminanceChroma(names) => {
+                names.iter().map(String::as_str).collect()
+            }
             Color::Gray(name) => vec![name],
         }
     }
@@ -138,6 +170,14 @@ impl Layer<'_> {
     }
 
     fn luminance(&self) -> Option<Color> {
+        let chroma = || {
+            let names = [self.find(&["ry"])?, self.find(&["y"])?, self.find(&["by"])?];
+            Some(Color::LuminanceChroma(names))
+        };
+        chroma().or_else(|| self.gray())
+    }
+
+    fn gray(&self) -> Option<Color> {
         self.find(&["y", "l", "luminance"]).map(Color::Gray)
     }
 
@@ -196,15 +236,6 @@ fn choose<'a>(
             _ => return Err(no_colors(headers)),
         },
     };
-    if !layer
-        .header
-        .channels
-        .list
-        .iter()
-        .all(|channel| channel.sampling.x() == 1 && channel.sampling.y() == 1)
-    {
-        return Err("has channels of fewer pixels than others (chroma subsampling)".into());
-    }
     let others = layers.iter().filter(|other| other.rgb().is_some()).count();
     if !layer.prefix.is_empty() || (headers.len() > 1 && others > 1) {
         remarks.push(format!("of its layers, \"{}\" is read", layer.name()));
@@ -266,6 +297,27 @@ impl Canvas {
 
 /// Reads the pixels. What the file has none of is black, and there only if all that is there is.
 pub(super) fn texels(bytes: &[u8], layout: &Layout) -> Result<Vec<[f32; 4]>, String> {
+    let mut texels = stored_texels(bytes, layout)?;
+    let primaries = layout.primaries;
+    match layout.channels.color {
+        Color::Gray(_) => return Ok(texels),
+        Color::Rgb(_) => {}
+        Color::LuminanceChroma(_) => {
+            let weights = primaries.luminance_weights();
+            let weights = weights.ok_or("has chromaticities without luminance")?;
+            for [r, g, b, _] in &mut texels {
+                [*r, *g, *b] = luminance_chroma::to_rgb([*r, *g, *b], weights);
+            }
+        }
+    }
+    if !primaries.are_rec_709() {
+        primaries.convert(&mut texels, layout.largest);
+    }
+    Ok(texels)
+}
+
+/// The values of the channels, as they are in the file.
+fn stored_texels(bytes: &[u8], layout: &Layout) -> Result<Vec<[f32; 4]>, String> {
     let alpha = layout.channels.alpha.as_deref();
     let outside = if alpha.is_some() { 0.0 } else { 1.0 };
     let canvas = || Canvas {
@@ -276,11 +328,27 @@ pub(super) fn texels(bytes: &[u8], layout: &Layout) -> Result<Vec<[f32; 4]>, Str
     };
     // A name that no channel has.
     let alpha = alpha.unwrap_or("no alpha");
+    if layout.is_subsampled {
+        let mut canvas = canvas();
+        match &layout.channels.color {
+            Color::Rgb([r, g, b]) | Color::LuminanceChroma([r, g, b]) => {
+                subsampled::for_each_pixel(bytes, [r, g, b, alpha], |x, y, texel| {
+                    canvas.set(x, y, texel);
+                })?;
+            }
+            Color::Gray(name) => {
+                subsampled::for_each_pixel(bytes, [name, alpha], |x, y, [g, a]| {
+                    canvas.set(x, y, [g, g, g, a]);
+                })?
+            }
+        }
+        return Ok(canvas.texels);
+    }
     let reader = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level();
     let canvas = match &layout.channels.color {
-        Color::Rgb([r, g, b]) => {
+        Color::Rgb([r, g, b]) | Color::LuminanceChroma([r, g, b]) => {
             reader
                 .specific_channels()
                 .required(r.as_str())

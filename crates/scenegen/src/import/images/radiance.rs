@@ -3,6 +3,10 @@
 //!
 //! The format is described in Radiance's `filefmts` and in Ward, "Real Pixels" (Graphics Gems II).
 
+use glam::{DMat3, DVec3};
+
+use super::primaries::{Primaries, REC_709};
+
 /// A colour of the CIE as red, green and blue of Radiance's primaries, which everyone takes for those of displays; its
 /// rows add up to 1.
 const XYZ_TO_RGB: [[f64; 3]; 3] = [
@@ -10,6 +14,9 @@ const XYZ_TO_RGB: [[f64; 3]; 3] = [
     [-1.022_108_17, 1.978_286_62, 0.043_821_56],
     [0.074_724_38, -0.251_939_57, 1.177_215_19],
 ];
+
+/// Primaries that differ by less from those of displays are taken for them.
+const PRIMARIES_TOLERANCE: f64 = 0.025;
 
 /// The longest header that is looked at.
 const MAX_HEADER: usize = 1 << 16;
@@ -31,6 +38,8 @@ pub(super) struct Header {
     /// Rows are stored from the bottom.
     from_bottom: bool,
     is_xyz: bool,
+    /// From red, green and blue of other primaries to those of displays.
+    to_rec_709: Option<DMat3>,
     /// What the pixels have been multiplied with.
     factors: [f64; 3],
     /// Of the first pixel.
@@ -39,9 +48,13 @@ pub(super) struct Header {
     pub(super) remarks: Vec<String>,
 }
 
-/// Whether a file is a Radiance picture: programs write `#?RADIANCE`, `#?RGBE` and their own names.
+/// What pictures begin with: programs write `#?RADIANCE`, `#?RGBE` and their own names.
+const MAGIC: &[u8] = b"#?";
+
+/// Whether a file is a Radiance picture. Some programs leave the first line out, but nothing else has a header that ends as
+/// theirs.
 pub(super) fn is_radiance(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"#?")
+    bytes.starts_with(MAGIC) || header(bytes).is_ok()
 }
 
 /// Reads the header.
@@ -53,6 +66,7 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, String> {
         from_right: false,
         from_bottom: false,
         is_xyz: false,
+        to_rec_709: None,
         factors: [1.0; 3],
         first_byte: 0,
         remarks: Vec::new(),
@@ -71,6 +85,11 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, String> {
     header.set_resolution(&resolution).ok_or_else(|| {
         format!("has no size and orientation such as -Y 512 +X 1024, but {resolution:?}")
     })?;
+    if !bytes.starts_with(MAGIC) {
+        header
+            .remarks
+            .push("lacks its first line, #?RADIANCE; read nonetheless".into());
+    }
     header.first_byte = lines.at;
     Ok(header)
 }
@@ -123,14 +142,43 @@ impl Header {
                     .push(format!("{variable} {value:?} is not positive; ignored"));
             }
             ("GAMMA", Some(&[1.0])) => {}
-            ("PRIMARIES", _) if is_near_display(value) => {}
-            ("GAMMA" | "PRIMARIES", _) => {
+            ("PRIMARIES", _) => self.set_primaries(value),
+            ("GAMMA", _) => {
                 self.remarks
                     .push(format!("{variable} {value:?} is ignored"));
             }
             _ => {}
         }
         Ok(())
+    }
+
+    /// CIE xy of red, green, blue and white. Those of displays, and of Radiance, which differ little, change nothing, and
+    /// zeros say nothing.
+    fn set_primaries(&mut self, value: &str) {
+        let numbers = value.split_whitespace().map(|word| word.parse().ok());
+        let numbers: Vec<f64> = numbers.collect::<Option<_>>().unwrap_or_default();
+        let primaries = match numbers.as_chunks() {
+            (&[red, green, blue, white], []) => Primaries {
+                red,
+                green,
+                blue,
+                white,
+            },
+            _ => return self.ignore_primaries(value),
+        };
+        let is_silent = numbers.iter().all(|&number| number == 0.0);
+        if is_silent || primaries.are_near(&REC_709, PRIMARIES_TOLERANCE) {
+            return;
+        }
+        self.to_rec_709 = primaries.to_rec_709();
+        if self.to_rec_709.is_none() {
+            self.ignore_primaries(value);
+        }
+    }
+
+    fn ignore_primaries(&mut self, value: &str) {
+        self.remarks
+            .push(format!("PRIMARIES {value:?} make no sense; ignored"));
     }
 
     /// `-Y height +X width` and its seven relatives: the first is the axis along which scanlines follow one another. Y
@@ -178,19 +226,14 @@ impl Header {
             true => XYZ_TO_RGB.map(|row| (0..3).map(|k| row[k] * stored[k]).sum()),
             false => stored,
         };
-        let [r, g, b] = [0, 1, 2].map(|k| (rgb[k] / self.factors[k]) as f32);
+        let rgb = [0, 1, 2].map(|k| rgb[k] / self.factors[k]);
+        let rgb = match self.to_rec_709 {
+            Some(to_rec_709) if !self.is_xyz => (to_rec_709 * DVec3::from(rgb)).to_array(),
+            _ => rgb,
+        };
+        let [r, g, b] = rgb.map(|value| value as f32);
         [r, g, b, 1.0]
     }
-}
-
-/// Whether primaries and white are those of displays, or of Radiance, which differ little; zeros say nothing.
-fn is_near_display(primaries: &str) -> bool {
-    const DISPLAY: [f64; 8] = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329];
-    let numbers = primaries.split_whitespace().map(|word| word.parse::<f64>());
-    let numbers: Vec<f64> = numbers.filter_map(Result::ok).collect();
-    let is_near = |(number, display): (&f64, f64)| (number - display).abs() < 0.025;
-    numbers.iter().all(|&number| number == 0.0)
-        || (numbers.len() == DISPLAY.len() && numbers.iter().zip(DISPLAY).all(is_near))
 }
 
 /// Reads the pixels behind the header. Colours beyond Rec. 709 have negative components.

@@ -1,6 +1,6 @@
 //! Radiance pictures, written by hand and by another encoder.
 
-use super::radiance::{Header, header, texels};
+use super::radiance::{Header, header, is_radiance, texels};
 
 fn decode(bytes: &[u8]) -> Result<(Header, Vec<[f32; 4]>), String> {
     let header = header(bytes)?;
@@ -70,11 +70,6 @@ fn factors_of_the_header_are_divided_by() {
     ] {
         assert_eq!(with(&format!("PRIMARIES={primaries}\n")).1, "");
     }
-    assert!(
-        with("PRIMARIES=0.708 0.292 0.17 0.797 0.131 0.046 0.3127 0.329\n")
-            .1
-            .contains("ignored")
-    );
     assert_eq!(
         with("# EXPOSURE=4\nVIEW= -vtl\nPIXASPECT=2\n"),
         (64.0, String::new())
@@ -93,6 +88,85 @@ fn factors_of_the_header_are_divided_by() {
         );
     }
     assert!(decode(&picture("FORMAT=16-bit\n", "-Y 1 +X 1", &[64])).is_err());
+}
+
+#[test]
+fn other_primaries_are_converted() {
+    let with = |lines: &str| {
+        let mut bytes = format!("#?RADIANCE\n{lines}\n-Y 1 +X 2\n").into_bytes();
+        bytes.extend([128, 128, 128, 129, 64, 128, 64, 129]);
+        let (header, texels) = decode(&bytes).unwrap();
+        (texels, header.remarks)
+    };
+    let rec_2020 = "PRIMARIES=0.708 0.292 0.17 0.797 0.131 0.046 0.3127 0.329\n";
+    let (texels, remarks) = with(rec_2020);
+    // ITU-R BT.2087, inverse; white stays white.
+    let green = [
+        1.6605 * 0.5 - 0.5876 - 0.0728 * 0.5,
+        -0.1246 * 0.5 + 1.1329 - 0.0083 * 0.5,
+        -0.0182 * 0.5 - 0.1006 + 1.1187 * 0.5,
+    ];
+    for (texel, expected) in texels.iter().zip([[1.0; 3], green]) {
+        let mut pairs = texel.iter().zip(expected);
+        assert!(
+            pairs.all(|(a, b): (&f32, f32)| (a - b).abs() < 2e-4),
+            "{texel:?} {expected:?}"
+        );
+    }
+    assert!(remarks.is_empty(), "{remarks:?}");
+    // Factors belong to the primaries of the file, and colours of the CIE have none.
+    let (scaled, _) = with(&format!("COLORCORR=1 2 1\n{rec_2020}"));
+    assert!(scaled[1][1] < texels[1][1]);
+    let (cie, _) = with(&format!("FORMAT=32-bit_rle_xyze\n{rec_2020}"));
+    assert_eq!(cie, with("FORMAT=32-bit_rle_xyze\n").0);
+    for odd in [
+        "0.64 0.33 0.64 0.33 0.15 0.06 0.3127 0.329",
+        "0.64 0.33 0.3 0.6 0.15 0.06",
+        "red green",
+        "0.9 0.1 0.1 0.9 0.1 0.1 0 0",
+    ] {
+        let (texels, remarks) = with(&format!("PRIMARIES={odd}\n"));
+        assert_eq!(texels[1][..3], [0.5, 1.0, 0.5], "{odd}");
+        assert!(
+            remarks[0].contains("make no sense; ignored"),
+            "{odd}: {remarks:?}"
+        );
+    }
+}
+
+#[test]
+fn the_first_line_may_be_missing() {
+    for lines in [
+        "FORMAT=32-bit_rle_rgbe\n",
+        "# made by hand\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=1\n",
+        "EXPOSURE=1.0\n",
+        "FORMAT=32-bit_rle_rgbe\r\n",
+    ] {
+        for resolution in ["-Y 1 +X 1", "+X 1 -Y 1"] {
+            let mut bytes = format!("{lines}\n{resolution}\n").into_bytes();
+            bytes.extend([64, 0, 0, 136]);
+            assert!(is_radiance(&bytes), "{lines}");
+            let (header, texels) = decode(&bytes).unwrap();
+            assert_eq!(texels[0][0], 64.0, "{lines}");
+            assert!(
+                header.remarks[0].contains("lacks its first line"),
+                "{:?}",
+                header.remarks
+            );
+        }
+    }
+    let (header, _) = decode(&picture("", "-Y 1 +X 1", &[64])).unwrap();
+    assert!(header.remarks.is_empty());
+    for other in [
+        &b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\n\n"[..],
+        b"FORMAT=32-bit_rle_rgbe\n-Y 1 +X 1\n",
+        b"P6\n1 1\n255\n\0\0\0",
+        b"a text\n\n-Y 1\n",
+        b"FORMAT=8-bit\n\n-Y 1 +X 1\n",
+        b"",
+    ] {
+        assert!(!is_radiance(other), "{other:?}");
+    }
 }
 
 #[test]
