@@ -5,6 +5,7 @@
 //! one from emitted code, and [`plugin`] loads one from a shared library. All three run the same
 //! [`tile::render_tiles`] and give the same bits.
 
+mod ahead;
 mod camera_rays;
 mod device;
 mod export;

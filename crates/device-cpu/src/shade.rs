@@ -2,19 +2,21 @@
 
 use std::ops::Range;
 
-use residual_render::domain::Lanes;
+use residual_render::domain::{Buffers, Lanes};
 use residual_render::layer::Layers;
 use residual_render::light::LightKinds;
 use residual_render::material::Material;
 use residual_render::renderer::MaterialVisitor;
 use residual_render::tracer::{self, Features, Tracer};
 
+use crate::ahead;
 use crate::samples::Samples;
 use crate::stream::{PathStream, ShadowStream, SortedHits};
 
 /// The shading of a stream: what it reads, and where what comes of it goes.
 pub(crate) struct Shading<'a, 's, D, T, L: ?Sized> {
     pub(crate) d: D,
+    pub(crate) buffers: &'a Buffers<'a>,
     pub(crate) tracer: &'a T,
     pub(crate) lights: &'a L,
     pub(crate) paths: &'a PathStream,
@@ -41,7 +43,15 @@ where
     #[inline(always)]
     fn hits<M: Material<D>>(&mut self, range: Range<usize>, material: &M) {
         let d = self.d;
+        let attributes = material.attributes();
         for (rest, valid) in lanes::<D>(range) {
+            let [soon, later] = [1, 2].map(|groups| rest.start + groups * D::LANES);
+            for triangle in self.hits.triangles::<D>(later) {
+                ahead::triangle(self.buffers, triangle, attributes);
+            }
+            for triangle in self.hits.triangles::<D>(soon) {
+                ahead::vertices(self.buffers, triangle, attributes);
+            }
             let members = self.hits.members(rest);
             let (path, sample) = self.paths.load(d, &members);
             let hit = self.hits.load(d, &members);

@@ -7,12 +7,14 @@
 use std::ops::Range;
 
 use residual_bvh::{Hit, Ray};
-use residual_render::domain::{Lanes, MAX_LANES};
+use residual_render::domain::{Buffers, Lanes, MAX_LANES};
 use residual_render::math::vec3::vec3;
 use residual_render::sampler::SampleKey;
 use residual_render::surface::{PathRay, SurfaceHit};
 use residual_render::tracer::{Path, Shadow};
+use residual_render::triangle::program_in;
 
+use crate::ahead;
 use crate::samples::Samples;
 
 type Row = [u32; 4];
@@ -253,14 +255,18 @@ impl SortedHits {
         &mut self.hits[paths]
     }
 
-    /// Sorts the first `len` paths by program: a counting sort, stable. `program_of` gives a triangle's program.
+    /// Sorts the first `len` paths by program: a counting sort, stable.
     #[inline(always)]
-    pub(crate) fn sort(&mut self, len: usize, program_of: impl Fn(u32) -> u32) {
+    pub(crate) fn sort(&mut self, len: usize, buffers: &Buffers<'_>) {
         let miss = self.starts.len() as u32 - 2;
         self.starts.fill(0);
-        for (hit, program) in self.hits[..len].iter().zip(&mut self.programs) {
+        let hits = &self.hits[..len];
+        for (path, (hit, program)) in hits.iter().zip(&mut self.programs).enumerate() {
+            if let Some(later) = hits.get(path + ahead::PROGRAMS_AHEAD) {
+                ahead::program(buffers, later.prim);
+            }
             *program = if hit.is_hit() {
-                program_of(hit.prim)
+                program_in(buffers, hit.prim)
             } else {
                 miss
             };
@@ -277,6 +283,14 @@ impl SortedHits {
         }
         self.starts.rotate_right(1);
         self.starts[0] = 0;
+    }
+
+    /// The triangles hit by the paths at `LANES` places from one on; beyond the last path, some others.
+    #[inline(always)]
+    pub(crate) fn triangles<D: Lanes>(&self, first: usize) -> impl Iterator<Item = u32> {
+        let places = self.order.get(first..).unwrap_or_default();
+        let paths = places.iter().take(D::LANES);
+        paths.map(|&path| self.hits[path as usize].prim)
     }
 
     /// Places of the paths that hit a program; of the misses, for the number of programs.

@@ -8,7 +8,6 @@ use residual_render::domain::{Lanes, MAX_LANES};
 use residual_render::passes::Counters;
 use residual_render::renderer::Renderer;
 use residual_render::tracer::{Settings, Tracer};
-use residual_render::triangle::program_in;
 
 use crate::camera_rays::CameraRays;
 use crate::job::{SceneView, TileJob};
@@ -60,7 +59,6 @@ where
     } else {
         None
     };
-    let program_of = |triangle: u32| program_in(&view.buffers, triangle);
     let mut cameras = CameraRays::new(job);
     let capacity = STREAM.min(job.samples() + MAX_LANES);
     let mut paths = PathStream::with_capacity(capacity);
@@ -98,7 +96,7 @@ where
             }
         }
         clock.lap(&mut counters.trace_camera);
-        hits.sort(all, program_of);
+        hits.sort(all, &view.buffers);
         clock.lap(&mut counters.sort);
 
         // Shading, program by program.
@@ -106,6 +104,7 @@ where
         shadows.clear();
         let mut shading = Shading {
             d,
+            buffers: &view.buffers,
             tracer: &tracer,
             lights,
             paths: &paths,

@@ -5,7 +5,7 @@ pub(crate) mod cost;
 pub(crate) mod goal;
 pub(crate) mod one_by_one;
 mod packet;
-mod prefetch;
+pub(crate) mod prefetch;
 pub(crate) mod single;
 pub(crate) mod slab;
 mod sorting_network;
