@@ -10,6 +10,7 @@ use crate::ray::{Hit, Ray};
 use crate::simd::Width;
 use crate::trace::goal::{AnyHit, ClosestHit, Goal};
 use crate::trace::packet::PacketKernel;
+use crate::trace::phased::PhasedKernel;
 use crate::trace::single::{any_hit, closest_hit};
 
 /// How a stream of rays is traced. The answers are the same.
@@ -46,6 +47,10 @@ pub trait Kernel<S, const N: usize, const P: usize>: Copy {
 /// One ray after the other: the best for incoherent rays.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Single;
+
+/// Many rays in flight, which take like steps together: the best for incoherent rays.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Phased;
 
 /// Packets of `R` rays (4, 8 or 16), sorted by direction within a window: good for coherent rays
 /// only.
@@ -91,6 +96,53 @@ where
         for (ray, occluded) in rays.iter().zip(occluded) {
             *occluded = any_hit(simd, precision, bvh, ray, filter);
         }
+    }
+}
+
+impl<S, const N: usize, const P: usize> Kernel<S, N, P> for Phased
+where
+    S: Width<N> + Width<P>,
+{
+    #[inline(always)]
+    fn closest_hits(
+        self,
+        simd: S,
+        precision: impl Precision,
+        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        rays: &[Ray],
+        hits: &mut [Hit],
+        filter: &impl HitFilter,
+    ) {
+        assert_eq!(rays.len(), hits.len(), "a hit for each ray");
+        let kernel = PhasedKernel {
+            simd,
+            precision,
+            bvh,
+            filter,
+            goal: ClosestHit,
+        };
+        kernel.trace(rays, |ray, hit| hits[ray] = hit);
+    }
+
+    #[inline(always)]
+    fn any_hits(
+        self,
+        simd: S,
+        precision: impl Precision,
+        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        rays: &[Ray],
+        occluded: &mut [bool],
+        filter: &impl HitFilter,
+    ) {
+        assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
+        let kernel = PhasedKernel {
+            simd,
+            precision,
+            bvh,
+            filter,
+            goal: AnyHit,
+        };
+        kernel.trace(rays, |ray, hit| occluded[ray] = hit.is_hit());
     }
 }
 
