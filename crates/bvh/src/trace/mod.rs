@@ -15,3 +15,4 @@ mod sorting_network;
 mod stack;
 pub(crate) mod stream;
 pub(crate) mod traverse;
+mod window;
