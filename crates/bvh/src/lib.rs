@@ -193,4 +193,4 @@ pub use trace::cost::{TraversalCost, traversal_cost};
 pub use trace::one_by_one::OneByOne;
 pub use trace::prefetch::prefetch;
 pub use trace::single::{any_hit, closest_hit};
-pub use trace::stream::{Hybrid, Kernel, Packets, Single};
+pub use trace::stream::{Hybrid, Kernel, Packets, Phased, Single};

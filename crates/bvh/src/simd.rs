@@ -53,6 +53,8 @@ pub trait Width<const N: usize>: fearless_simd::Simd {
     fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// `a` in the lanes whose bits are set, `b` in the others.
     fn select(self, bits: u32, a: Self::Float, b: Self::Float) -> Self::Float;
+    /// The least lane; none may be NaN.
+    fn least(self, a: Self::Float) -> f32;
     /// Lane `i` in bit `i`.
     fn bits(self, mask: Self::Mask) -> u32;
 }
@@ -159,6 +161,10 @@ macro_rules! implement_lanes {
             #[inline(always)]
             fn select(self, bits: u32, a: $float<S>, b: $float<S>) -> $float<S> {
                 <$mask<S> as SimdMask<S>>::from_bitmask(self, u64::from(bits)).select(a, b)
+            }
+            #[inline(always)]
+            fn least(self, a: $float<S>) -> f32 {
+                a.reduce_min()
             }
             #[inline(always)]
             fn bits(self, mask: $mask<S>) -> u32 {
@@ -278,6 +284,11 @@ macro_rules! implement_narrow_lanes {
                         b[lane]
                     }
                 })
+            }
+            #[inline(always)]
+            fn least(self, a: [f32; $n]) -> f32 {
+                a.into_iter()
+                    .fold(f32::INFINITY, |a, b| if b < a { b } else { a })
             }
             #[inline(always)]
             fn bits(self, mask: [bool; $n]) -> u32 {

@@ -8,7 +8,7 @@
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
     AllHits, BuildQuality, Bvh, BvhView, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets,
-    QuantizedBvh, Ray, Single, Watertight, Width, build,
+    Phased, QuantizedBvh, Ray, Single, Watertight, Width, build,
 };
 
 /// Squares behind each other, two triangles each.
@@ -58,6 +58,10 @@ where
     Hybrid::<4>.closest_hits(simd, Exact, bvh, &rays, &mut hits, &AllHits);
     assert!(hits.iter().zip(&expected).all(|(a, b)| a.prim == b.prim));
     let mut occluded = vec![false; rays.len()];
+    Phased.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
+    assert_eq!(hits, expected);
+    Phased.any_hits(simd, Watertight, bvh, &rays, &mut occluded, &AllHits);
+    assert_eq!(occluded, hit);
     Packets::<4>.any_hits(simd, Fast, bvh, &rays, &mut occluded, &AllHits);
     assert_eq!(occluded, hit);
     Single.any_hits(simd, Fast, bvh, &rays, &mut occluded, &AllHits);

@@ -36,6 +36,13 @@ impl Child {
         (self.0 & ((1 << Child::FIRST_BITS) - 1)) as usize
     }
 
+    /// A leaf of two packets or more, but for the first.
+    #[inline(always)]
+    pub(crate) fn without_first_packet(self) -> Child {
+        // One more in the low bits, and one less in the count.
+        Child(self.0.wrapping_add(1).wrapping_sub(1 << Child::FIRST_BITS))
+    }
+
     #[inline(always)]
     pub(crate) fn packet_count(self) -> usize {
         (self.0 >> Child::FIRST_BITS & 15) as usize

@@ -9,6 +9,7 @@
 
 use crate::bounds::Bounds;
 use crate::filter::Culling;
+use crate::precision::ending::Ending;
 use crate::precision::expansion::{self, Pair};
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
@@ -31,13 +32,14 @@ impl Precision for Exact {}
 
 impl Test for Exact {
     #[inline(always)]
-    fn test<S: Width<W>, const W: usize>(
+    fn test<S: Width<W>, const W: usize, E: Ending>(
         self,
         simd: S,
         rays: &Shear<'_, S, W>,
         triangles: impl Triangles<S, W>,
         tmax: S::Float,
         culling: Culling,
+        ending: E,
     ) -> Option<LaneHits<S, W>> {
         let mut lanes = candidates(simd, rays, &triangles, culling);
         if lanes == 0 {
@@ -65,7 +67,7 @@ impl Test for Exact {
             u: simd.load(&u),
             v: simd.load(&v),
         };
-        hits.within(simd, rays.tmin, tmax)
+        hits.within(simd, rays.tmin, tmax, ending)
     }
 }
 

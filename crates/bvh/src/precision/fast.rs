@@ -1,6 +1,7 @@
 //! The shear test with fused operations throughout.
 
 use crate::filter::Culling;
+use crate::precision::ending::Ending;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
 use crate::precision::triangle_test::sealed::Test;
@@ -17,13 +18,14 @@ impl Precision for Fast {}
 
 impl Test for Fast {
     #[inline(always)]
-    fn test<S: Width<W>, const W: usize>(
+    fn test<S: Width<W>, const W: usize, E: Ending>(
         self,
         simd: S,
         rays: &Shear<'_, S, W>,
         triangles: impl Triangles<S, W>,
         tmax: S::Float,
         culling: Culling,
+        ending: E,
     ) -> Option<LaneHits<S, W>> {
         let a = rays.sheared_fast(simd, &triangles, 0);
         let b = rays.sheared_fast(simd, &triangles, 1);
@@ -33,7 +35,7 @@ impl Test for Fast {
         let [w, u, v] = [edge(c, b), edge(a, c), edge(b, a)];
 
         let inside = sides(simd, [w, u, v], culling);
-        if inside.lanes == 0 {
+        if E::EARLY && inside.lanes == 0 {
             return None;
         }
         let inv = simd.div(simd.splat(1.0), simd.add(simd.add(w, u), v));
@@ -45,6 +47,6 @@ impl Test for Fast {
             u: simd.mul(u, inv),
             v: simd.mul(v, inv),
         };
-        hits.within(simd, rays.tmin, tmax)
+        hits.within(simd, rays.tmin, tmax, ending)
     }
 }

@@ -1,5 +1,6 @@
 //! How exactly a ray meets a triangle, as a type: the tests, and what each starts from and returns.
 
+pub(crate) mod ending;
 pub(crate) mod exact;
 mod expansion;
 pub(crate) mod fast;

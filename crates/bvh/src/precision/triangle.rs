@@ -6,6 +6,7 @@
 use crate::layout::class::{Axes, axes};
 use crate::layout::columns::Columns;
 use crate::layout::triangle_packet::TrianglePacket;
+use crate::precision::ending::Ending;
 use crate::ray::Ray;
 use crate::simd::{Stored, Width};
 
@@ -49,6 +50,38 @@ impl<S: Width<W>, const W: usize, const P: usize> Triangles<S, W> for OneTriangl
     }
 }
 
+/// One ray prepared for triangle tests, as it is kept in memory; see [`Shear`].
+#[derive(Clone, Copy)]
+pub(crate) struct RayShear {
+    org: [f32; 3],
+    slope: [f32; 2],
+    inv_z: f32,
+    axes: [Axis; 3],
+}
+
+/// An axis in a byte, of which the compiler knows that it is an index of three.
+#[derive(Clone, Copy)]
+#[repr(u8)]
+enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+impl RayShear {
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray) -> RayShear {
+        const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+        let [kx, ky, kz] = axes(ray);
+        RayShear {
+            org: [ray.org[kx], ray.org[ky], ray.org[kz]],
+            slope: [ray.dir[kx] / ray.dir[kz], ray.dir[ky] / ray.dir[kz]],
+            inv_z: 1.0 / ray.dir[kz],
+            axes: [AXES[kx], AXES[ky], AXES[kz]],
+        }
+    }
+}
+
 /// Rays with the same order of axes, prepared for triangle tests: a translation and a shear take
 /// each to the z axis.
 ///
@@ -71,20 +104,18 @@ impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
     /// One ray, in every lane.
     #[inline(always)]
     pub(crate) fn of_ray(simd: S, ray: &'a Ray, tmin: f32) -> Shear<'a, S, W> {
-        let axes = axes(ray);
-        let [kx, ky, kz] = axes;
+        Shear::of_prepared(simd, &RayShear::new(ray), ray, tmin)
+    }
+
+    /// As [`of_ray`](Shear::of_ray).
+    #[inline(always)]
+    pub(crate) fn of_prepared(simd: S, shear: &RayShear, ray: &'a Ray, tmin: f32) -> Self {
+        let [x, y, z] = shear.org;
         Shear {
-            axes,
-            org: [
-                simd.splat(ray.org[kx]),
-                simd.splat(ray.org[ky]),
-                simd.splat(ray.org[kz]),
-            ],
-            slope: [
-                simd.splat(ray.dir[kx] / ray.dir[kz]),
-                simd.splat(ray.dir[ky] / ray.dir[kz]),
-            ],
-            inv_z: simd.splat(1.0 / ray.dir[kz]),
+            axes: shear.axes.map(|axis| axis as usize),
+            org: [simd.splat(x), simd.splat(y), simd.splat(z)],
+            slope: [simd.splat(shear.slope[0]), simd.splat(shear.slope[1])],
+            inv_z: simd.splat(shear.inv_z),
             tmin: simd.splat(tmin),
             rays: std::slice::from_ref(ray),
             members: &[0],
@@ -183,12 +214,18 @@ pub struct LaneHits<S: Width<W>, const W: usize> {
 }
 
 impl<S: Width<W>, const W: usize> LaneHits<S, W> {
-    /// Only the hits at a distance in `[tmin, tmax]`, if there are any.
+    /// Only the hits at a distance in `[tmin, tmax]`, if there are any or the test ends as all others.
     #[inline(always)]
-    pub(crate) fn within(mut self, simd: S, tmin: S::Float, tmax: S::Float) -> Option<Self> {
+    pub(crate) fn within<E: Ending>(
+        mut self,
+        simd: S,
+        tmin: S::Float,
+        tmax: S::Float,
+        _: E,
+    ) -> Option<Self> {
         let within = simd.and(simd.le(tmin, self.t), simd.le(self.t, tmax));
         self.lanes &= simd.bits(within);
-        (self.lanes != 0).then_some(self)
+        (!E::EARLY || self.lanes != 0).then_some(self)
     }
 
     /// Replaces `[t, u, v]` in some lanes.

@@ -9,22 +9,24 @@ pub trait Precision: sealed::Test {}
 
 pub(crate) mod sealed {
     use crate::filter::Culling;
+    use crate::precision::ending::Ending;
     use crate::precision::triangle::{LaneHits, Shear, Triangles};
     use crate::simd::Width;
 
     /// The test itself.
     pub trait Test: Copy + Default + Send + Sync + 'static {
         /// The lanes whose ray meets its triangle at a distance in `[tmin, tmax]`, from the sides
-        /// that `culling` leaves. (Marks of single triangles are the caller's business: see
+        /// that `culling` leaves; if none is inside, `None` or no lanes, as `ending` says. (Marks of single triangles are the caller's business: see
         /// [`LaneHits::back`].)
         #[doc(hidden)]
-        fn test<S: Width<W>, const W: usize>(
+        fn test<S: Width<W>, const W: usize, E: Ending>(
             self,
             simd: S,
             rays: &Shear<'_, S, W>,
             triangles: impl Triangles<S, W>,
             tmax: S::Float,
             culling: Culling,
+            ending: E,
         ) -> Option<LaneHits<S, W>>;
     }
 }

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use crate::bounds::Bounds;
 use crate::filter::Culling;
+use crate::precision::ending::Ending;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
 use crate::precision::triangle_test::sealed::Test;
@@ -33,13 +34,14 @@ const SMALLEST: f32 = 1e-30;
 
 impl Test for Watertight {
     #[inline(always)]
-    fn test<S: Width<W>, const W: usize>(
+    fn test<S: Width<W>, const W: usize, E: Ending>(
         self,
         simd: S,
         rays: &Shear<'_, S, W>,
         triangles: impl Triangles<S, W>,
         tmax: S::Float,
         culling: Culling,
+        ending: E,
     ) -> Option<LaneHits<S, W>> {
         let a = rays.sheared(simd, &triangles, 0);
         let b = rays.sheared(simd, &triangles, 1);
@@ -52,7 +54,7 @@ impl Test for Watertight {
         let edges = [products(c, b), products(a, c), products(b, a)];
         let [w, u, v] = edges.map(|(p, q)| simd.sub(p, q));
         let mut inside = sides(simd, [w, u, v], culling);
-        if inside.lanes == 0 {
+        if E::EARLY && inside.lanes == 0 {
             return None;
         }
 
@@ -86,7 +88,7 @@ impl Test for Watertight {
                 ill_conditioned_hit(rays.ray(lane), &triangles.corners(lane))
             });
         }
-        hits.within(simd, rays.tmin, tmax)
+        hits.within(simd, rays.tmin, tmax, ending)
     }
 }
 

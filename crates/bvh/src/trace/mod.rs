@@ -1,10 +1,13 @@
 //! Queries of a hierarchy: one walk, the tests of boxes on its way, and the kernels that are made of
-//! them, for single rays and for packets.
+//! them, for single rays, for packets and for many rays in flight.
 
 pub(crate) mod cost;
+mod flight_stack;
 pub(crate) mod goal;
+mod leaf;
 pub(crate) mod one_by_one;
 mod packet;
+mod phased;
 pub(crate) mod prefetch;
 pub(crate) mod single;
 pub(crate) mod slab;
@@ -12,3 +15,4 @@ mod sorting_network;
 mod stack;
 pub(crate) mod stream;
 pub(crate) mod traverse;
+mod window;

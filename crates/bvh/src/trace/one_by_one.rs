@@ -10,6 +10,7 @@ use crate::layout::boxes::sealed::Sealed;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
 use crate::layout::triangle_packet::TrianglePacket;
+use crate::precision::ending::Early;
 use crate::precision::triangle::{OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
@@ -192,9 +193,9 @@ impl<S: Width<1>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
                 }
                 let triangle = OneTriangle { packet, lane };
                 let tmax = self.simd.splat(self.best.t);
-                let test = self
-                    .precision
-                    .test(self.simd, &self.shear, triangle, tmax, F::CULLING);
+                let test =
+                    self.precision
+                        .test(self.simd, &self.shear, triangle, tmax, F::CULLING, Early);
                 let Some(test) = test else { continue };
                 let [Stored([t]), Stored([u]), Stored([v])] = test.store(self.simd);
                 let hit = Hit { t, u, v, prim };

@@ -16,6 +16,7 @@ use crate::layout::class::Class;
 use crate::layout::columns::{Columns, greatest};
 use crate::layout::triangle_packet::SINGLE_SIDED;
 use crate::layout::validate::MAX_DEPTH;
+use crate::precision::ending::Early;
 use crate::precision::triangle::{LaneHits, OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
@@ -206,7 +207,9 @@ where
                 }
                 let triangle = OneTriangle { packet, lane };
                 let ends = simd.load(&best.t);
-                let test = self.precision.test(simd, shear, triangle, ends, F::CULLING);
+                let test = self
+                    .precision
+                    .test(simd, shear, triangle, ends, F::CULLING, Early);
                 let Some(mut test) = test else { continue };
                 // Rays that are strictly nearer need no second look, unless there is a filter.
                 if !F::REJECTS && !matches!(F::CULLING, Culling::PerTriangle) {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::filter::{HitFilter, improve};
+use crate::filter::HitFilter;
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
@@ -10,8 +10,9 @@ use crate::layout::triangle_packet::TrianglePacket;
 use crate::precision::triangle::Shear;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
-use crate::simd::{Stored, Width};
+use crate::simd::Width;
 use crate::trace::goal::{AnyHit, ClosestHit, Goal};
+use crate::trace::leaf::improve_by_packet;
 use crate::trace::slab::Slab;
 use crate::trace::traverse::{Visitor, traverse};
 
@@ -145,7 +146,16 @@ impl<S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
         for index in leaf.first_packet()..leaf.first_packet() + leaf.packet_count() {
             // SAFETY: the leaves of a sound hierarchy have packets that exist.
             let packet = unsafe { self.packets.get_unchecked(index) };
-            self.packet(packet)?;
+            improve_by_packet(
+                self.simd,
+                self.precision,
+                &self.shear,
+                packet,
+                self.ray,
+                self.filter,
+                self.goal,
+                &mut self.best,
+            )?;
         }
         ControlFlow::Continue(())
     }
@@ -176,35 +186,5 @@ impl<'a, S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, G: Goal>
             goal,
             best,
         }
-    }
-
-    /// Improves the best hit by the packet's triangles. Breaks where any hit will do.
-    #[inline(always)]
-    fn packet(&mut self, packet: &TrianglePacket<P>) -> ControlFlow<()> {
-        let tmax = self.simd.splat(self.best.t);
-        let hits = self
-            .precision
-            .test(self.simd, &self.shear, packet, tmax, F::CULLING);
-        let Some(hits) = hits else {
-            return ControlFlow::Continue(());
-        };
-        let [Stored(t), Stored(u), Stored(v)] = hits.store(self.simd);
-        let mut lanes = hits.lanes;
-        while lanes != 0 {
-            // The remainder keeps a lane in range for the compiler; hits have bits in 0..P only.
-            let lane = lanes.trailing_zeros() as usize % P;
-            lanes &= lanes - 1;
-            let hit = Hit {
-                t: t[lane],
-                u: u[lane],
-                v: v[lane],
-                prim: packet.prim_ids[lane],
-            };
-            let back = hits.back >> lane & 1 == 1;
-            if improve(&mut self.best, hit, back, self.ray, self.filter) {
-                self.goal.found()?;
-            }
-        }
-        ControlFlow::Continue(())
     }
 }

@@ -104,21 +104,33 @@ fn inverse_of_rays<S: Width<R>, const R: usize>(
     })
 }
 
-/// One ray's constants, and its octant.
-#[inline(always)]
-fn constants_of_ray<S: Width<4>>(simd: S, ray: &Ray) -> (Constants, Octant) {
-    // As they lie in memory; what comes last is of no use.
-    let lanes = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last];
-    let dir = simd.load(&lanes(ray.dir, ray.tmax));
-    let negative = simd.bits(simd.lt(dir, simd.splat(0.0)));
-    let sign = simd.select(negative, simd.splat(-1.0), simd.splat(1.0));
-    // Not the inverse of `tmax`: of `f32::MAX` it is denormal, which costs as much as a node.
-    let longest = simd.splat(ray.longest());
-    let size = simd.select(0b111, simd.abs(dir), longest);
-    let inv = inverse(simd, sign, size, longest);
-    let org = lanes(ray.org, ray.tmin);
-    let octant = [0, 1, 2].map(|axis| negative >> axis & 1 == 1);
-    (Constants::new(simd, org, inv, org, inv), octant)
+/// One ray prepared for slab tests, as it is kept in memory.
+#[derive(Clone, Copy)]
+pub(crate) struct RaySlab {
+    constants: Constants,
+    /// As [`Slab::near_row`].
+    near_row: [u8; 3],
+}
+
+impl RaySlab {
+    #[inline(always)]
+    pub(crate) fn new<S: Width<4>>(simd: S, ray: &Ray) -> RaySlab {
+        // As they lie in memory; what comes last is of no use.
+        let lanes = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last];
+        let dir = simd.load(&lanes(ray.dir, ray.tmax));
+        let negative = simd.bits(simd.lt(dir, simd.splat(0.0)));
+        let sign = simd.select(negative, simd.splat(-1.0), simd.splat(1.0));
+        // Not the inverse of `tmax`: of `f32::MAX` it is denormal, which costs as much as a node.
+        let longest = simd.splat(ray.longest());
+        let size = simd.select(0b111, simd.abs(dir), longest);
+        let inv = inverse(simd, sign, size, longest);
+        let org = lanes(ray.org, ray.tmin);
+        let octant = [0, 1, 2].map(|axis| negative >> axis & 1 == 1);
+        RaySlab {
+            constants: Constants::new(simd, org, inv, org, inv),
+            near_row: near_rows(octant),
+        }
+    }
 }
 
 /// Rays of one octant, prepared for slab tests. Distances are in units of their directions.
@@ -129,7 +141,7 @@ pub(crate) struct Slab<S: Width<N>, const N: usize> {
     far_shift: [S::Float; 3],
     /// Row of the entry plane in a node's bounds; its exit plane's is this with the low bit
     /// flipped.
-    near_row: [usize; 3],
+    near_row: [u8; 3],
     tmin: S::Float,
 }
 
@@ -141,8 +153,13 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
     where
         S: Width<4>,
     {
-        let (constants, octant) = constants_of_ray(simd, ray);
-        Slab::splat(simd, &constants, octant, tmin)
+        Slab::of_prepared(simd, &RaySlab::new(simd, ray), tmin)
+    }
+
+    /// As [`of_ray`](Slab::of_ray).
+    #[inline(always)]
+    pub(crate) fn of_prepared(simd: S, ray: &RaySlab, tmin: f32) -> Slab<S, N> {
+        Slab::splat(simd, &ray.constants, ray.near_row, tmin)
     }
 
     /// A ray a lane, all of one octant, and valid.
@@ -194,18 +211,18 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
         }
         let [near_inv, far_inv] = [near_inv, far_inv].map(|inv| <S as Width<4>>::load(simd, &inv));
         let constants = Constants::new(simd, near_org, near_inv, far_org, far_inv);
-        Slab::splat(simd, &constants, octant, least(rays.tmin))
+        Slab::splat(simd, &constants, near_rows(octant), least(rays.tmin))
     }
 
     #[inline(always)]
-    fn splat(simd: S, constants: &Constants, octant: Octant, tmin: f32) -> Slab<S, N> {
+    fn splat(simd: S, constants: &Constants, near_row: [u8; 3], tmin: f32) -> Slab<S, N> {
         let splat = |x: [f32; 4]| [simd.splat(x[0]), simd.splat(x[1]), simd.splat(x[2])];
         Slab {
             near_scale: splat(constants.near_scale),
             near_shift: splat(constants.near_shift),
             far_scale: splat(constants.far_scale),
             far_shift: splat(constants.far_shift),
-            near_row: near_rows(octant),
+            near_row,
             tmin: simd.splat(tmin),
         }
     }
@@ -220,11 +237,11 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
         tmax: S::Float,
     ) -> (u32, S::Float) {
         let near = |axis: usize| {
-            let plane = plane(axis, self.near_row[axis]);
+            let plane = plane(axis, usize::from(self.near_row[axis]));
             simd.mul_add(plane, self.near_scale[axis], self.near_shift[axis])
         };
         let far = |axis: usize| {
-            let plane = plane(axis, self.near_row[axis] ^ 1);
+            let plane = plane(axis, usize::from(self.near_row[axis] ^ 1));
             simd.mul_add(plane, self.far_scale[axis], self.far_shift[axis])
         };
         let entry = simd.max_number(near(0), self.tmin);
@@ -265,8 +282,8 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
 }
 
 #[inline(always)]
-fn near_rows(octant: Octant) -> [usize; 3] {
-    [0, 1, 2].map(|axis| 2 * axis + octant[axis] as usize)
+fn near_rows(octant: Octant) -> [u8; 3] {
+    [0, 1, 2].map(|axis: u8| 2 * axis + u8::from(octant[usize::from(axis)]))
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@ use std::fmt::Debug;
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets, Precision,
-    Ray, Single, Watertight, Width, build, closest_hit,
+    AllHits, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets, Phased,
+    Precision, Ray, Single, Watertight, Width, build, closest_hit,
 };
 
 use crate::mesh::{Mesh, jittered_icosphere};
@@ -138,6 +138,7 @@ fn by_some<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
 {
     compare(simd, Single, precision, bvh, batch, tally, 0);
     compare(simd, Hybrid::<R>, precision, bvh, batch, tally, 2);
+    compare(simd, Phased, precision, bvh, batch, tally, 4);
 }
 
 fn by_one_by_one<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(

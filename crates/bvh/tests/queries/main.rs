@@ -16,6 +16,7 @@ mod refit;
 mod robustness;
 mod runner;
 mod serial;
+mod streams;
 mod structure;
 mod tally;
 mod watertight;

@@ -3,7 +3,7 @@
 use fearless_simd::{Level, Simd, dispatch};
 use residual_bvh::{
     AllHits, Bounds, Boxes, BuildQuality, Bvh, BvhView, Hit, Hybrid, InvalidBvh, Kernel, Packets,
-    QuantizedBvh, QuantizedNode, Ray, Single, Watertight, WideNode, Width, build,
+    Phased, QuantizedBvh, QuantizedNode, Ray, Single, Watertight, WideNode, Width, build,
 };
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
@@ -249,6 +249,7 @@ fn check(mesh: &Mesh, rays: &[Ray]) -> usize {
         });
         dispatch!(Level::new(), simd => {
             check_widths!(simd, Packets::<8>, 4 x 4 8 x 4 16 x 16);
+            check_widths!(simd, Phased, 4 x 4 8 x 8 16 x 16);
             check_widths!(simd, Hybrid::<8>, 4 x 4 8 x 8 16 x 8);
         });
     }

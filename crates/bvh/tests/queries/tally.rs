@@ -3,7 +3,7 @@
 use std::ops::AddAssign;
 
 /// The kernels that are compared.
-pub(crate) const KERNELS: [&str; 4] = ["single", "packets", "hybrid", "one by one"];
+pub(crate) const KERNELS: [&str; 5] = ["single", "packets", "hybrid", "one by one", "phased"];
 
 /// What was found; `[kind of ray]` is random or aimed.
 #[derive(Clone, Copy, Default)]

@@ -7,6 +7,7 @@ use self::integers::{integer, quotient, triple_product};
 use super::Exact;
 use crate::filter::Culling;
 use crate::layout::triangle_packet::TrianglePacket;
+use crate::precision::ending::Early;
 use crate::precision::triangle::Shear;
 use crate::precision::triangle_test::sealed::Test;
 use crate::precision::watertight::Watertight;
@@ -107,7 +108,7 @@ fn hits<P: Test>(
     ) -> ([[f32; 3]; 16], u32, u32) {
         let shear = Shear::of_ray(simd, ray, 0.0);
         let tmax = simd.splat(f32::MAX);
-        let Some(hits) = precision.test(simd, &shear, packet, tmax, Culling::None) else {
+        let Some(hits) = precision.test(simd, &shear, packet, tmax, Culling::None, Early) else {
             return ([[0.0; 3]; 16], 0, 0);
         };
         let [t, u, v] = hits.store(simd).map(|stored| stored.0);

@@ -1,0 +1,156 @@
+//! Windows: so many rays of a stream as are looked at together, and the packets that they make.
+
+use std::ops::Range;
+
+use crate::filter::HitFilter;
+use crate::layout::boxes::Boxes;
+use crate::layout::class::{Class, axes};
+use crate::layout::columns::Columns;
+use crate::precision::triangle_test::Precision;
+use crate::ray::{Hit, Ray};
+use crate::simd::Width;
+use crate::trace::goal::Goal;
+use crate::trace::packet::PacketKernel;
+
+/// Rays that are sorted into packets together.
+pub(crate) const WINDOW: usize = 256;
+
+/// The indices of rays that are in order as they are.
+const IN_ORDER: [u16; 32] = {
+    let mut order = [0; 32];
+    let mut i = 0;
+    while i < 32 {
+        order[i] = i as u16;
+        i += 1;
+    }
+    order
+};
+
+/// Whether packets are worth while: whether most of some pairs of neighbours have a class in common
+/// and similar slopes.
+#[inline(always)]
+fn is_coherent(rays: &[Ray]) -> bool {
+    const PAIRS: usize = 8;
+    /// Slopes of rays lie in [-1, 1].
+    const SIMILAR: f32 = 0.1;
+    let step = (rays.len() / PAIRS).max(2);
+    let (mut pairs, mut similar) = (0, 0);
+    for pair in rays.chunks(step).filter(|pair| pair.len() > 1) {
+        let [kx, ky, kz] = axes(&pair[0]);
+        let slopes = |ray: &Ray| [ray.dir[kx] / ray.dir[kz], ray.dir[ky] / ray.dir[kz]];
+        let (a, b) = (slopes(&pair[0]), slopes(&pair[1]));
+        let near = (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) < SIMILAR;
+        similar += u32::from(near && Class::index(&pair[0]) == Class::index(&pair[1]));
+        pairs += 1;
+    }
+    2 * similar >= pairs
+}
+
+/// Rays that are traced in the same way.
+pub(crate) enum Run {
+    /// A window of rays that make good packets.
+    Coherent(Range<usize>),
+    /// As many windows of other rays as follow each other, since the last rays of a run are few in flight.
+    Incoherent(Range<usize>),
+}
+
+/// The runs of a stream, in their order.
+#[inline(always)]
+pub(crate) fn runs(rays: &[Ray]) -> impl Iterator<Item = Run> {
+    let window = |start: usize| start..rays.len().min(start + WINDOW);
+    let is_incoherent =
+        move |start: usize| start < rays.len() && !is_coherent(&rays[window(start)]);
+    let mut next = 0;
+    std::iter::from_fn(move || {
+        let start = next;
+        while is_incoherent(next) {
+            next = window(next).end;
+        }
+        if next > start {
+            return Some(Run::Incoherent(start..next));
+        }
+        next = window(start).end;
+        (next > start).then_some(Run::Coherent(start..next))
+    })
+}
+
+impl<S, const N: usize, const P: usize, Pr, F, B, G> PacketKernel<'_, S, N, P, Pr, F, B, G>
+where
+    Pr: Precision,
+    F: HitFilter,
+    B: Boxes<N>,
+    G: Goal,
+{
+    /// Traces at most [`WINDOW`] rays.
+    #[inline(always)]
+    pub(crate) fn window<const R: usize>(&self, rays: &[Ray], hits: &mut [Hit])
+    where
+        S: Width<N> + Width<P> + Width<R>,
+    {
+        if is_coherent(rays) {
+            self.neighbours::<R>(rays, hits);
+        } else {
+            self.sort::<R>(rays, hits);
+        }
+    }
+
+    /// Traces packets of neighbours as they come.
+    #[inline(always)]
+    pub(crate) fn neighbours<const R: usize>(&self, rays: &[Ray], hits: &mut [Hit])
+    where
+        S: Width<N> + Width<P> + Width<R>,
+    {
+        const { assert!(R <= 32) };
+        for (rays, hits) in rays.chunks(R).zip(hits.chunks_mut(R)) {
+            let members = &IN_ORDER[..rays.len()];
+            let columns = Columns::<R>::gather(rays, members);
+            match columns.class(self.simd) {
+                Some(class) => self.trace(columns, rays, members, class, hits),
+                None => self.sort::<R>(rays, hits),
+            }
+        }
+    }
+
+    /// Sorts at most [`WINDOW`] rays by class, keeping their order in each, and traces packets of
+    /// neighbours.
+    #[inline(always)]
+    fn sort<const R: usize>(&self, rays: &[Ray], hits: &mut [Hit])
+    where
+        S: Width<N> + Width<P> + Width<R>,
+    {
+        let mut classes = [0u8; WINDOW];
+        let mut ends = [0u16; Class::INVALID + 1];
+        for (ray, class) in rays.iter().zip(&mut classes) {
+            *class = Class::index(ray) as u8;
+            ends[*class as usize] += 1;
+        }
+        let mut start = 0;
+        for end in &mut ends {
+            (*end, start) = (start, start + *end);
+        }
+        let mut order = [0u16; WINDOW];
+        for (ray, &class) in classes[..rays.len()].iter().enumerate() {
+            let end = &mut ends[class as usize];
+            order[*end as usize] = ray as u16;
+            *end += 1;
+        }
+        let mut start = 0;
+        for &end in &ends[..Class::INVALID] {
+            for members in order[start as usize..end as usize].chunks(R) {
+                if members.len() as u32 > self.few {
+                    let class = Class::of(&rays[members[0] as usize]);
+                    let columns = Columns::<R>::gather(rays, members);
+                    self.trace(columns, rays, members, class, hits);
+                } else {
+                    for &member in members {
+                        hits[member as usize] = self.single(&rays[member as usize]);
+                    }
+                }
+            }
+            start = end;
+        }
+        for &member in &order[start as usize..rays.len()] {
+            hits[member as usize] = Hit::miss(rays[member as usize].tmax);
+        }
+    }
+}
