@@ -2,8 +2,8 @@
 //!
 //! Where they are too much, highlights give way, and the diffuse colour stays what other programs show. Exporters write the
 //! "specular" of their principled surfaces as `Ks`: Blender's old default is `Kd` 0.8 and `Ks` 0.5, which stands for the
-//! reflectance of plastic, 4 %. Blender and three.js show 0.8 of such a file. Dividing both by their sum, as
-//! was done here, showed 0.62, and taking what the highlight reflects off the colour underneath, as layers do, would show
+//! reflectance of plastic, 4 %. Blender and three.js show 0.8 of such a file. Dividing both by their sum
+//! would show 0.62, and taking what the highlight reflects off the colour underneath, as layers do, would show
 //! 0.4. That plastic is not made matte where its colour is white, or a texture's brightest texel is, 4 % stay in any case.
 
 use residual_render::texture::srgb_decoded;
