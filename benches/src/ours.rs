@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 use clap::ValueEnum;
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Hybrid, Kernel as _, OneByOne, Packets, Single, build,
+    AllHits, BuildQuality, Bvh, Hybrid, Kernel as _, OneByOne, Packets, Phased, Single, build,
 };
 
 use crate::contender::Stream;
@@ -24,7 +24,9 @@ pub enum Kernel {
     Single,
     /// Many rays, one box.
     Packet,
-    /// Packets that fall apart into single rays.
+    /// Many rays in flight.
+    Phased,
+    /// Packets that fall apart into single rays, or many rays in flight, as suits the rays.
     Hybrid,
     /// One ray, one box.
     Scalar,
@@ -32,9 +34,10 @@ pub enum Kernel {
 
 impl Kernel {
     /// All, in the order of the tables.
-    pub const ALL: [Kernel; 4] = [
+    pub const ALL: [Kernel; 5] = [
         Kernel::Single,
         Kernel::Packet,
+        Kernel::Phased,
         Kernel::Hybrid,
         Kernel::Scalar,
     ];
@@ -45,6 +48,7 @@ impl fmt::Display for Kernel {
         f.pad(match self {
             Kernel::Single => "single",
             Kernel::Packet => "packet",
+            Kernel::Phased => "phased",
             Kernel::Hybrid => "hybrid",
             Kernel::Scalar => "scalar",
         })
@@ -130,6 +134,10 @@ pub fn variants() -> Vec<Variant> {
         Packet(Packets::<4>, 4): 4 x 4, Fast;
         Packet(Packets::<8>, 8): 8 x 8, Fast;
         Packet(Packets::<16>, 16): 16 x 16, Fast;
+        Phased(Phased, 1): 8 x 8, Fast;
+        Phased(Phased, 1): 16 x 16, Fast;
+        Phased(Phased, 1): 8 x 8, Watertight;
+        Phased(Phased, 1): 16 x 16, Watertight;
         Hybrid(Hybrid::<4>, 4): 4 x 4, Fast;
         Hybrid(Hybrid::<8>, 8): 8 x 8, Fast;
         Hybrid(Hybrid::<16>, 16): 8 x 8, Fast;

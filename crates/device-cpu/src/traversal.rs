@@ -195,7 +195,7 @@ pub struct PreciseBvh<'a, P> {
     precision: P,
 }
 
-/// Streams are traced in packets as wide as the hierarchy, which fall back to single rays where neighbours disagree.
+/// Streams are traced in packets as wide as the hierarchy where neighbours agree, and with many rays in flight elsewhere.
 impl<P: Precision> Traversal for PreciseBvh<'_, P> {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>) {
         let (scene, precision) = (self.bvh, self.precision);
