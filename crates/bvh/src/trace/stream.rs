@@ -57,7 +57,7 @@ pub struct Phased;
 pub struct Packets<const R: usize>;
 
 /// Where neighbours are alike, packets of `R` rays (4, 8 or 16) until few of them agree, then single
-/// rays; elsewhere many rays in flight, as [`Phased`].
+/// rays; elsewhere many rays in flight, as [`Phased`], or in small hierarchies one after the other.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hybrid<const R: usize>;
 
@@ -237,6 +237,11 @@ where
                 Run::Coherent(window) => {
                     packets.neighbours::<R>(&rays[window.clone()], &mut hits[window]);
                 }
+                Run::Incoherent(run) if bvh.nodes().len() <= FEW_NODES => {
+                    for index in run {
+                        hits[index] = packets.single(&rays[index]);
+                    }
+                }
                 Run::Incoherent(run) => {
                     let hits = &mut hits[run.clone()];
                     phased.trace(&rays[run], |ray, hit| hits[ray] = hit);
@@ -280,6 +285,11 @@ where
                     packets.neighbours::<R>(&rays[window.clone()], hits);
                     answer(hits, &mut occluded[window]);
                 }
+                Run::Incoherent(run) if bvh.nodes().len() <= FEW_NODES => {
+                    for index in run {
+                        occluded[index] = packets.single(&rays[index]).is_hit();
+                    }
+                }
                 Run::Incoherent(run) => {
                     let occluded = &mut occluded[run.clone()];
                     phased.trace(&rays[run], |ray, hit| occluded[ray] = hit.is_hit());
@@ -288,6 +298,10 @@ where
         }
     }
 }
+
+/// So few nodes stay in the nearest cache, where rays wait for nothing: one after the other takes 0.9 times as long for 36
+/// triangles as many in flight.
+const FEW_NODES: usize = 16;
 
 #[inline(always)]
 fn answer(hits: &[Hit], occluded: &mut [bool]) {
