@@ -58,7 +58,7 @@ fn record<R: IndexedRecord>(buffers: &Buffers<'_>, index: u32) {
     let words = buffers.get(R::BUFFER);
     let first = index as usize * R::WORDS as usize;
     prefetch(words, first);
-    if LINE % R::WORDS != 0 {
+    if !LINE.is_multiple_of(R::WORDS) {
         prefetch(words, first + R::WORDS as usize - 1);
     }
 }
