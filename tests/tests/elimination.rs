@@ -105,6 +105,7 @@ const SOURCES: &[(&str, &[Effect])] = &[
 /// Files that every renderer may contain.
 const COMMON: &[&str] = &[
     "bvh/src/ray.rs",
+    "bvh/src/trace/prefetch.rs",
     "device-cpu/src/",
     "render/src/alias_table.rs",
     "render/src/bsdf/diffuse.rs",
