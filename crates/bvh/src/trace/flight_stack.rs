@@ -197,7 +197,8 @@ impl FlightStack {
 /// negative, and of all bits the bottom's are the least.
 #[inline(always)]
 fn is_behind(key: u64, tmax: f32) -> bool {
-    (key >> 32) as i32 > tmax.to_bits() as i32
+    // Adding zero makes one zero of both: a ray that starts on a triangle hits it at either.
+    (key >> 32) as i32 > (tmax + 0.0).to_bits() as i32
 }
 
 /// Room for the keys of a node's slots. The others are less than all of them, for no child is the root.

@@ -7,7 +7,7 @@ use residual_bvh::{
     Phased, QuantizedBvh, Ray, TrianglePacket, Watertight, WideNode, Width, build,
 };
 
-use crate::mesh::{Mesh, soup};
+use crate::mesh::{Mesh, fan, grid, jittered_icosphere, soup};
 use crate::oracle::closest_hit_of_all;
 use crate::random::Random;
 use crate::runner::{Holes, aimed, same, trials};
@@ -131,6 +131,25 @@ fn leaves_of_many_packets() {
     let mesh = mesh.marked(&mut random);
     let rays = mixed_rays(&mesh, &mut random);
     assert!(check(&mesh, &rays) > rays.len() / 8);
+}
+
+/// Rays that start at vertices of several triangles, and hit them at a distance of zero of either sign.
+#[test]
+fn rays_that_start_on_triangles() {
+    let mut random = Random::new(162);
+    for mesh in [fan(60), grid(12), jittered_icosphere(2, &mut random)] {
+        let rays: Vec<Ray> = (0..700)
+            .map(|i| {
+                let mut dir = [0.0; 3];
+                dir[i % 3] = [1.0, -1.0, 0.15625, -0.15625][random.below(4)];
+                if i % 4 == 0 {
+                    dir[(i + 1) % 3] = 0.5;
+                }
+                Ray::unbounded(mesh.vertex(&mut random), dir)
+            })
+            .collect();
+        assert!(check(&mesh, &rays) > rays.len() / 8);
+    }
 }
 
 /// `LEVELS` nodes in each other, all of whose boxes are touched by what touches one: each level leaves all siblings but one
