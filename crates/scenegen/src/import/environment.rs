@@ -1,5 +1,7 @@
 //! The environment image that the user gave.
 
+use residual_render::texture::srgb_table;
+
 use super::error::{Fault, ImportError};
 use super::options::EnvironmentOptions;
 use super::warnings::Warnings;
@@ -40,7 +42,7 @@ pub(super) fn append(
     let place = format!("environment \"{}\"", file.display());
     decoded.warn(&place, warnings);
     decoded.texels = Texels::RgbaF32(match decoded.texels {
-        Texels::Rgba8(texels) => texels.into_iter().map(from_srgb).collect(),
+        Texels::Rgba8(texels) => from_srgb(texels),
         Texels::Rgba16(texels) => {
             let texels = texels.into_iter();
             texels.map(sixteen_bits::decoded_texel).collect()
@@ -61,14 +63,9 @@ pub(super) fn append(
     Ok(())
 }
 
-fn from_srgb([r, g, b, a]: [u8; 4]) -> [f32; 4] {
-    let linear = |code: u8| {
-        let encoded = f64::from(code) / 255.0;
-        (if encoded <= 0.04045 {
-            encoded / 12.92
-        } else {
-            ((encoded + 0.055) / 1.055).powf(2.4)
-        }) as f32
-    };
-    [linear(r), linear(g), linear(b), f32::from(a) / 255.0]
+fn from_srgb(texels: Vec<[u8; 4]>) -> Vec<[f32; 4]> {
+    let table = srgb_table();
+    let linear = |code: u8| table[usize::from(code)];
+    let texel = |[r, g, b, a]: [u8; 4]| [linear(r), linear(g), linear(b), f32::from(a) / 255.0];
+    texels.into_iter().map(texel).collect()
 }
