@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use gltf::json::{Index, Material};
 
 use super::document::Document;
-use super::lookup::{find, get, place};
+use super::lookup::{find, place};
 use super::material;
 use super::members::Members;
 use super::textures::Textures;
@@ -57,15 +57,16 @@ impl<'a> Materials<'a> {
         warnings: &mut Warnings,
     ) -> Result<(usize, &MaterialDesc, [u32; 2]), Fault> {
         let materials = &self.document.root.materials;
-        let index = index.filter(|&index| {
+        let material = index.and_then(|index| {
             let instead = "the default material is used";
-            find(materials, index, "materials", user, instead, warnings).is_some()
+            let material = find(materials, index, "materials", user, instead, warnings)?;
+            Some((index.value(), material))
         });
-        let key = index.map(|index| index.value());
+        let key = material.map(|(index, _)| index);
         let in_scene = match self.indices.get(&key) {
             Some(&known) => known,
             None => {
-                let (material, uv_sets) = self.read(index, user, warnings)?;
+                let (material, uv_sets) = self.read(material, warnings)?;
                 self.list.push(material);
                 self.uv_sets.push(uv_sets);
                 self.indices.insert(key, self.list.len() - 1);
@@ -78,16 +79,13 @@ impl<'a> Materials<'a> {
 
     fn read(
         &mut self,
-        index: Option<Index<Material>>,
-        user: &str,
+        material: Option<(usize, &Material)>,
         warnings: &mut Warnings,
     ) -> Result<(MaterialDesc, UvSets), Fault> {
         let default = Material::default();
-        let (material, place, name) = match index {
-            Some(index) => {
-                let material = get(&self.document.root.materials, index, "materials", user)?;
+        let (material, place, name) = match material {
+            Some((index, material)) => {
                 let name = material.name.clone();
-                let index = index.value();
                 (
                     material,
                     place("materials", index, material.name.as_deref()),
