@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x175f375289222263;
+    pub const STRUCTURE: u64 = 0x61f47905cd13f8f0;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -69,7 +69,7 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
 
 /// "thirds"
 mod program0 {
-    use super::render::bsdf::{Bsdf, CoatedDiffuse};
+    use super::render::bsdf::{Bsdf, Coated, Diffuse, Glossy, Isotropic, Schlick};
     use super::render::domain::Domain;
     use super::render::material::{Material, Shading};
     use super::render::math::Vec3;
@@ -96,17 +96,21 @@ mod program0 {
             D: 's,
         {
             let albedo = Bound(Const([0.33333334, 2e-7, 0.1]).color(d, surface));
-            let roughness = Bound(Const(0.7_f32).scalar(d, surface));
             let reflectance =
                 Bound(Const([0.040000003, 0.040000003, 0.040000003]).color(d, surface));
             let grazing_reflectance = Bound(Const(1.0_f32).scalar(d, surface));
+            let roughness = Bound(Const(0.7_f32).scalar(d, surface));
             Shading {
                 emission: None,
-                bsdf: CoatedDiffuse {
-                    albedo,
-                    roughness,
-                    reflectance,
-                    grazing: grazing_reflectance,
+                bsdf: Coated {
+                    coat: Glossy {
+                        fresnel: Schlick {
+                            normal: reflectance,
+                            grazing: grazing_reflectance,
+                        },
+                        roughness: Isotropic { roughness },
+                    },
+                    base: Diffuse { albedo },
                 },
             }
         }

@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xcb5e65c7d57fd1bd;
+    pub const STRUCTURE: u64 = 0xe375ffb505751202;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -69,12 +69,12 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
 
 /// "brass"
 mod program0 {
-    use super::render::bsdf::{Bsdf, Conductor};
+    use super::render::bsdf::{Bsdf, Glossy, Isotropic, Schlick};
     use super::render::domain::Domain;
     use super::render::material::{Material, Shading};
     use super::render::math::Vec3;
     use super::render::surface::{Attributes, Surface};
-    use super::render::texture::{Bound, ColorSource, Param, ScalarSource};
+    use super::render::texture::{Bound, ColorSource, Const, Param, ScalarSource};
 
     pub struct Program;
 
@@ -96,12 +96,16 @@ mod program0 {
             D: 's,
         {
             let albedo = Bound(Param(0).color(d, surface));
+            let metal_grazing_reflectance = Bound(Const(1.0_f32).scalar(d, surface));
             let roughness = Bound(Param(4).scalar(d, surface));
             Shading {
                 emission: None,
-                bsdf: Conductor {
-                    color: albedo,
-                    roughness,
+                bsdf: Glossy {
+                    fresnel: Schlick {
+                        normal: albedo,
+                        grazing: metal_grazing_reflectance,
+                    },
+                    roughness: Isotropic { roughness },
                 },
             }
         }

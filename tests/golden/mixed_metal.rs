@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xe3d49acc8066eb52;
+    pub const STRUCTURE: u64 = 0x3024fb8e74c191db;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -69,7 +69,7 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
 
 /// "worn"
 mod program0 {
-    use super::render::bsdf::{Bsdf, CoatedDiffuse, Conductor, Mix};
+    use super::render::bsdf::{Bsdf, Coated, Diffuse, Glossy, Isotropic, Mix, Schlick};
     use super::render::domain::Domain;
     use super::render::material::{Material, Shading};
     use super::render::math::Vec3;
@@ -96,6 +96,7 @@ mod program0 {
             D: 's,
         {
             let albedo = Bound(Param(0).color(d, surface));
+            let metal_grazing_reflectance = Bound(Const(1.0_f32).scalar(d, surface));
             let roughness = Bound(Param(4).scalar(d, surface));
             let reflectance = Bound(Param(5).color(d, surface));
             let grazing_reflectance = Bound(Const(1.0_f32).scalar(d, surface));
@@ -103,15 +104,22 @@ mod program0 {
             Shading {
                 emission: None,
                 bsdf: Mix {
-                    a: CoatedDiffuse {
-                        albedo,
-                        roughness,
-                        reflectance,
-                        grazing: grazing_reflectance,
+                    a: Coated {
+                        coat: Glossy {
+                            fresnel: Schlick {
+                                normal: reflectance,
+                                grazing: grazing_reflectance,
+                            },
+                            roughness: Isotropic { roughness },
+                        },
+                        base: Diffuse { albedo },
                     },
-                    b: Conductor {
-                        color: albedo,
-                        roughness,
+                    b: Glossy {
+                        fresnel: Schlick {
+                            normal: albedo,
+                            grazing: metal_grazing_reflectance,
+                        },
+                        roughness: Isotropic { roughness },
                     },
                     weight: metallic,
                 },

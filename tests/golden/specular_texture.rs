@@ -27,7 +27,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x816385b189450c0e;
+    pub const STRUCTURE: u64 = 0x29c45454ccbab21d;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -96,7 +96,7 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
 mod program0 {
     use super::{TEXTURE_0, TEXTURE_1};
 
-    use super::render::bsdf::{Bsdf, CoatedDiffuse};
+    use super::render::bsdf::{Bsdf, Coated, Diffuse, Glossy, Isotropic, Schlick};
     use super::render::domain::Domain;
     use super::render::material::{Material, Shading};
     use super::render::math::Vec3;
@@ -126,16 +126,20 @@ mod program0 {
             D: 's,
         {
             let albedo = Bound(Param(0).color(d, surface));
-            let roughness = Bound(Param(17).scalar(d, surface));
             let reflectance = Bound(Product(Param(9), Gray(TEXTURE_0)).color(d, surface));
             let grazing_reflectance = Bound(Product(Param(4), TEXTURE_1).scalar(d, surface));
+            let roughness = Bound(Param(17).scalar(d, surface));
             Shading {
                 emission: None,
-                bsdf: CoatedDiffuse {
-                    albedo,
-                    roughness,
-                    reflectance,
-                    grazing: grazing_reflectance,
+                bsdf: Coated {
+                    coat: Glossy {
+                        fresnel: Schlick {
+                            normal: reflectance,
+                            grazing: grazing_reflectance,
+                        },
+                        roughness: Isotropic { roughness },
+                    },
+                    base: Diffuse { albedo },
                 },
             }
         }

@@ -30,11 +30,7 @@ pub fn metallic_roughness(base: [f32; 3], metallic: f32, roughness: f32) -> Meta
         base_color: color(base),
         metallic: scalar(metallic),
         roughness: scalar(roughness),
-        ior: 1.5,
-        specular: scalar(1.0),
-        specular_color: color([1.0; 3]),
-        transmission: scalar(0.0),
-        solid: false,
+        ..MetallicRoughness::default()
     }
 }
 

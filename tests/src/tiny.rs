@@ -253,6 +253,109 @@ fn surfaces() -> Vec<Tiny> {
             behind(surface("ball", glass(true)), ball()),
         ),
         Tiny::new(
+            "frosted_glass",
+            &[
+                Effect::Refraction,
+                Effect::RoughTransmission,
+                Effect::SmoothNormals,
+            ],
+            &[],
+            behind(
+                surface(
+                    "frosted",
+                    MetallicRoughness {
+                        roughness: scalar(0.3),
+                        ..glass(true)
+                    },
+                ),
+                ball(),
+            ),
+        ),
+        Tiny::new(
+            "paper",
+            &[
+                Effect::DielectricCoat,
+                Effect::DiffuseTransmission,
+                Effect::MixedLobes,
+            ],
+            &[],
+            scene(
+                surface(
+                    "paper",
+                    MetallicRoughness {
+                        diffuse_transmission: scalar(0.4),
+                        diffuse_transmission_color: color([0.9, 0.6, 0.3]),
+                        ..metallic_roughness([0.7, 0.6, 0.5], 0.0, 0.6)
+                    },
+                ),
+                corner(),
+            ),
+        ),
+        Tiny::new(
+            "car_paint",
+            &[Effect::MetallicReflection, Effect::ClearCoat],
+            &diffuse,
+            scene(
+                surface(
+                    "car paint",
+                    MetallicRoughness {
+                        clearcoat: scalar(0.8),
+                        clearcoat_roughness: scalar(0.1),
+                        ..metallic_roughness([0.7, 0.1, 0.1], 1.0, 0.5)
+                    },
+                ),
+                corner(),
+            ),
+        ),
+        Tiny::new(
+            "velvet",
+            &[Effect::DielectricCoat, Effect::Sheen],
+            &[],
+            scene(
+                surface(
+                    "velvet",
+                    MetallicRoughness {
+                        sheen_color: color([0.8, 0.7, 0.9]),
+                        sheen_roughness: scalar(0.4),
+                        ..metallic_roughness([0.3, 0.1, 0.2], 0.0, 0.9)
+                    },
+                ),
+                corner(),
+            ),
+        ),
+        Tiny::new(
+            "soap_film",
+            &[Effect::MetallicReflection, Effect::Iridescence],
+            &diffuse,
+            scene(
+                surface(
+                    "soap film",
+                    MetallicRoughness {
+                        iridescence: scalar(0.9),
+                        iridescence_thickness: scalar(350.0),
+                        ..metallic_roughness([0.7, 0.6, 0.5], 1.0, 0.3)
+                    },
+                ),
+                corner(),
+            ),
+        ),
+        Tiny::new(
+            "brushed_metal",
+            &[Effect::MetallicReflection, Effect::Anisotropy],
+            &diffuse,
+            scene(
+                surface(
+                    "brushed",
+                    MetallicRoughness {
+                        anisotropy: scalar(0.7),
+                        anisotropy_rotation: 0.6,
+                        ..metallic_roughness([0.7, 0.6, 0.5], 1.0, 0.3)
+                    },
+                ),
+                corner().map(along_u),
+            ),
+        ),
+        Tiny::new(
             "phong",
             &[Effect::PhongReflection],
             &diffuse,
@@ -402,6 +505,32 @@ fn textures() -> Vec<Tiny> {
             }),
         ),
         Tiny::new(
+            "film_thickness",
+            &[
+                &TEXTURE[..],
+                &[
+                    Effect::LinearTexels,
+                    Effect::MetallicReflection,
+                    Effect::Iridescence,
+                ],
+            ]
+            .concat(),
+            &[Effect::DiffuseReflection],
+            textured(false, REPEAT, linear, |texture| {
+                surface(
+                    "oil",
+                    MetallicRoughness {
+                        iridescence: scalar(1.0),
+                        iridescence_thickness: ScalarInput {
+                            factor: 500.0,
+                            texture: Some((texture, 1)),
+                        },
+                        ..metallic_roughness([0.5; 3], 1.0, 0.4)
+                    },
+                )
+            }),
+        ),
+        Tiny::new(
             "texture_transform",
             &and(Effect::TextureTransforms),
             &[],
@@ -414,6 +543,15 @@ fn textures() -> Vec<Tiny> {
             with(|texture| texture.uv_set = 1),
         ),
     ]
+}
+
+/// A sheet with the tangents of its first texture coordinates.
+fn along_u(mesh: MeshDesc) -> MeshDesc {
+    let along = (mesh.positions[1] - mesh.positions[0]).normalize();
+    MeshDesc {
+        tangents: Some(vec![along.extend(1.0); mesh.positions.len()]),
+        ..mesh
+    }
 }
 
 fn attributes() -> Vec<Tiny> {

@@ -37,6 +37,7 @@ fn diffuse(albedo: f32, emission: f32) -> Program {
         attributes: Attributes::default(),
         inputs: vec![input("albedo", albedo), input("emission", emission)],
         normal: None,
+        tangent: None,
         emission: (emission > 0.0).then_some(emits),
         bsdf: BsdfNode::Diffuse { albedo: Input(0) },
         alpha_test: None,

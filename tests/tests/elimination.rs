@@ -15,6 +15,15 @@ use residual_scenegen::plan::{Plan, PlanOptions, plan};
 use residual_tests::library::Library;
 use residual_tests::{fixtures, read_scene, scenes, tiny};
 
+/// Effects that are layers over a base.
+const COATS: &[Effect] = &[Effect::DielectricCoat, Effect::ClearCoat, Effect::Sheen];
+/// Effects whose light microfacets reflect.
+const FACETS: &[Effect] = &[
+    Effect::DielectricCoat,
+    Effect::ClearCoat,
+    Effect::MetallicReflection,
+];
+
 /// What emitted texts contain, and the effects that alone call for it.
 const WORDS: &[(&str, &[Effect])] = &[
     ("TEXTURE_", &[Effect::Textures]),
@@ -40,14 +49,16 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("alpha_test(", &[Effect::AlphaMasks, Effect::AlphaBlending]),
     ("AlphaMask {", &[Effect::AlphaMasks]),
     ("AlphaBlend {", &[Effect::AlphaBlending]),
-    ("CoatedDiffuse {", &[Effect::DielectricCoat]),
-    ("Conductor {", &[Effect::MetallicReflection]),
+    ("Coated {", COATS),
+    ("Glossy {", FACETS),
+    ("ThinFilm {", &[Effect::Iridescence]),
+    ("Anisotropic {", &[Effect::Anisotropy]),
+    ("decode_tangent", &[Effect::Anisotropy]),
+    ("Sheen {", &[Effect::Sheen]),
+    ("RoughDielectric {", &[Effect::RoughTransmission]),
+    ("DiffuseTransmission {", &[Effect::DiffuseTransmission]),
     ("Phong {", &[Effect::PhongReflection]),
     ("Mirror {", &[Effect::MirrorReflection]),
-    (
-        "Dielectric",
-        &[Effect::Refraction, Effect::ThinTransmission],
-    ),
     ("Thin", &[Effect::ThinTransmission]),
     ("Solid", &[Effect::Refraction]),
     ("Area<", &[Effect::EmittingSurfaces]),
@@ -80,17 +91,25 @@ const SOURCES: &[(&str, &[Effect])] = &[
         "render/src/alpha.rs",
         &[Effect::AlphaMasks, Effect::AlphaBlending],
     ),
-    (
-        "render/src/bsdf/coated_diffuse.rs",
-        &[Effect::DielectricCoat],
-    ),
-    (
-        "render/src/bsdf/microfacet.rs",
-        &[Effect::DielectricCoat, Effect::MetallicReflection],
-    ),
+    ("render/src/bsdf/coated.rs", COATS),
+    ("render/src/bsdf/glossy.rs", FACETS),
     ("render/src/bsdf/phong.rs", &[Effect::PhongReflection]),
     ("render/src/bsdf/mirror.rs", &[Effect::MirrorReflection]),
-    ("render/src/bsdf/combine.rs", &[Effect::MixedLobes]),
+    (
+        "render/src/bsdf/combine.rs",
+        &[Effect::MixedLobes, Effect::DielectricCoat],
+    ),
+    ("render/src/bsdf/ggx.rs", FACETS),
+    ("render/src/bsdf/directional_albedo.rs", FACETS),
+    (
+        "render/src/bsdf/fresnel.rs",
+        &[
+            Effect::DielectricCoat,
+            Effect::MetallicReflection,
+            Effect::Refraction,
+            Effect::ThinTransmission,
+        ],
+    ),
     ("render/src/light/area.rs", &[Effect::EmittingSurfaces]),
     (
         "render/src/light/punctual.rs",
@@ -109,6 +128,9 @@ const COMMON: &[&str] = &[
     "device-cpu/src/",
     "render/src/alias_table.rs",
     "render/src/bsdf/diffuse.rs",
+    // Kinds whose functions fold to constants or to the source that they hold.
+    "render/src/bsdf/interface.rs",
+    "render/src/bsdf/roughness.rs",
     "render/src/bsdf/mod.rs",
     "render/src/camera.rs",
     "render/src/domain/",
@@ -207,7 +229,7 @@ fn renderers_contain_what_scenes_call_for() {
         ("diffuse_and_phong", &["bsdf::phong", "bsdf::combine"]),
         ("diffuse_and_mirror", &["bsdf::mirror"]),
         ("environment", &["light::environment"]),
-        ("mixed_metal", &["bsdf::microfacet", "bsdf::coated_diffuse"]),
+        ("mixed_metal", &["bsdf::glossy", "bsdf::coated"]),
         ("solid_glass", &["bsdf::dielectric"]),
     ] {
         let tiny = tiny::all().into_iter().find(|tiny| tiny.name == name);
@@ -228,8 +250,9 @@ const NOT_IN_CORNELL: &[&str] = &[
     "light::environment",
     "light::punctual",
     "bsdf::dielectric",
-    "bsdf::microfacet",
-    "bsdf::coated_diffuse",
+    "bsdf::ggx",
+    "bsdf::glossy",
+    "bsdf::coated",
     "bsdf::phong",
     "bsdf::mirror",
     "bsdf::combine",

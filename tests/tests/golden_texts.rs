@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use residual_render::program::{
-    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, LightNode, Literal, ScalarNode,
-    SourceNode, Structure,
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, FresnelNode, LightNode, Literal,
+    RoughnessNode, ScalarNode, SourceNode, Structure,
 };
 use residual_render::texture::Input;
 use residual_scenegen::effects::{Effect, Effects};
@@ -141,6 +141,8 @@ fn literals(structure: &Structure) -> Vec<Literal<'_>> {
         for (_, field) in &literal.fields {
             match field {
                 Field::Bsdf(node) => add(node.literal(), all),
+                Field::Fresnel(node) => add(node.literal(), all),
+                Field::Roughness(node) => add(node.literal(), all),
                 Field::ColorSource(node) => add(node.literal(), all),
                 Field::ScalarSource(node) => add(node.literal(), all),
                 _ => {}
@@ -233,6 +235,8 @@ fn every_row_of_the_node_table_is_emitted() {
     }
     let tables = [
         ("bsdf", BsdfNode::NAMES),
+        ("bsdf", FresnelNode::NAMES),
+        ("bsdf", RoughnessNode::NAMES),
         ("texture", ColorNode::NAMES),
         ("texture", ScalarNode::NAMES),
         ("light", LightNode::NAMES),

@@ -35,6 +35,8 @@ macro_rules! goldens {
 goldens! {
     alpha_blending
     alpha_mask
+    brushed_metal
+    car_paint
     checkerboard
     clamp_wrap
     constants
@@ -44,8 +46,10 @@ goldens! {
     directional_light
     emission
     environment
+    film_thickness
     float_texels
     dielectric_coat
+    frosted_glass
     independent_sampler
     linear_texels
     masked_emission
@@ -58,9 +62,11 @@ goldens! {
     normal_map
     odd_names
     orthographic_camera
+    paper
     phong
     second_uv_set
     smooth_normals
+    soap_film
     solid_glass
     specular_texture
     spot_light
@@ -68,6 +74,7 @@ goldens! {
     texture_transform
     textured_emission
     thin_glass
+    velvet
     vertex_colors
 }
 

@@ -1,7 +1,9 @@
 //! Programs of materials as Mitsuba's BSDFs.
 
 use residual_render::bsdf::AnyInterface;
-use residual_render::program::{BsdfNode, ColorNode, Program, ScalarNode, SourceNode};
+use residual_render::program::{
+    BsdfNode, ColorNode, FresnelNode, Program, RoughnessNode, ScalarNode, SourceNode,
+};
 use residual_render::texture::Input;
 
 use super::xml::Element;
@@ -53,6 +55,23 @@ impl Inputs<'_> {
         }
     }
 
+    /// Reflectance at normal and at grazing incidence.
+    fn fresnel(&self, node: &FresnelNode) -> Result<([f32; 3], f32), String> {
+        match node {
+            FresnelNode::Schlick { normal, grazing } => {
+                Ok((self.color(*normal)?, self.number(*grazing)?))
+            }
+            FresnelNode::ThinFilm { .. } => Err("a thin film".to_owned()),
+        }
+    }
+
+    fn roughness(&self, node: &RoughnessNode) -> Result<f32, String> {
+        match node {
+            RoughnessNode::Isotropic { roughness } => self.number(*roughness),
+            RoughnessNode::Anisotropic { .. } => Err("anisotropy".to_owned()),
+        }
+    }
+
     fn bsdf(&self, node: &BsdfNode) -> Result<Element, String> {
         match node {
             BsdfNode::Black => Ok(both_sides(diffuse([0.0; 3]))),
@@ -62,32 +81,34 @@ impl Inputs<'_> {
                 let reflectance = self.color(*reflectance)?;
                 Ok(both_sides(mirror.rgb("specular_reflectance", reflectance)))
             }
-            // Fresnel as Schlick has it, GGX with α = roughness², visible normals: the same formulas.
-            BsdfNode::Conductor { color, roughness } => Ok(both_sides(
-                Element::plugin("bsdf", "principled")
-                    .rgb("base_color", self.color(*color)?)
-                    .float("roughness", self.number(*roughness)?)
-                    .float("metallic", 1),
-            )),
-            BsdfNode::CoatedDiffuse {
-                albedo,
-                roughness,
-                reflectance,
-                grazing,
-            } => {
-                let [r, g, b] = self.color(*reflectance)?;
-                if r != g || g != b || self.number(*grazing)? != 1.0 {
-                    return Err("a tinted or weakened coat".to_owned());
-                }
-                // Disney's coat and base are close to glTF's, but not the same: Fresnel's formula instead of Schlick's, and
-                // a base that throws some light back at grazing angles. Specular 1 reflects 8 %.
+            // Fresnel as Schlick has it, GGX with α = roughness², visible normals: the same formulas, but for what facets
+            // throw at one another.
+            BsdfNode::Glossy { fresnel, roughness } => {
+                let (color, _) = self.fresnel(fresnel)?;
                 Ok(both_sides(
                     Element::plugin("bsdf", "principled")
-                        .rgb("base_color", self.color(*albedo)?)
-                        .float("roughness", self.number(*roughness)?)
-                        .float("specular", r / 0.08),
+                        .rgb("base_color", color)
+                        .float("roughness", self.roughness(roughness)?)
+                        .float("metallic", 1),
                 ))
             }
+            BsdfNode::Coated { coat, base } => match (&**coat, &**base) {
+                (BsdfNode::Glossy { fresnel, roughness }, BsdfNode::Diffuse { albedo }) => {
+                    let ([r, g, b], grazing) = self.fresnel(fresnel)?;
+                    if r != g || g != b || grazing != 1.0 {
+                        return Err("a tinted or weakened coat".to_owned());
+                    }
+                    // Disney's coat and base are close to ours, but not the same: Fresnel's formula instead of Schlick's,
+                    // and a base that throws some light back at grazing angles. Specular 1 reflects 8 %.
+                    Ok(both_sides(
+                        Element::plugin("bsdf", "principled")
+                            .rgb("base_color", self.color(*albedo)?)
+                            .float("roughness", self.roughness(roughness)?)
+                            .float("specular", r / 0.08),
+                    ))
+                }
+                _ => Err("a coat on what is not matte".to_owned()),
+            },
             BsdfNode::Dielectric {
                 transmittance,
                 ior,
@@ -100,6 +121,9 @@ impl Inputs<'_> {
                 interface: AnyInterface::Thin,
                 ..
             } => Err("a thin dielectric".to_owned()),
+            BsdfNode::RoughDielectric { .. } => Err("a rough dielectric".to_owned()),
+            BsdfNode::DiffuseTransmission { .. } => Err("diffuse transmission".to_owned()),
+            BsdfNode::Sheen { .. } => Err("sheen".to_owned()),
             BsdfNode::Phong { .. } => Err("a Phong lobe".to_owned()),
             BsdfNode::Mix { .. } | BsdfNode::Sum { .. } => Err("a mix of lobes".to_owned()),
         }

@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use residual_device_cpu::{LaneCount, SceneView, TileJob, TileRenderer, render_lanes};
-use residual_render::bsdf::{Bsdf, CoatedDiffuse};
+use residual_render::bsdf::{Bsdf, Coated, Diffuse, Glossy, Isotropic, Schlick};
 use residual_render::camera::Perspective;
 use residual_render::domain::Domain;
 use residual_render::layer::Layers;
@@ -144,11 +144,19 @@ where
     {
         Shading {
             emission: None,
-            bsdf: CoatedDiffuse {
-                albedo: Bound(self.albedo.color(d, surface)),
-                roughness: Bound(self.roughness.scalar(d, surface)),
-                reflectance: Bound(self.reflectance.color(d, surface)),
-                grazing: Bound(self.grazing.scalar(d, surface)),
+            bsdf: Coated {
+                coat: Glossy {
+                    fresnel: Schlick {
+                        normal: Bound(self.reflectance.color(d, surface)),
+                        grazing: Bound(self.grazing.scalar(d, surface)),
+                    },
+                    roughness: Isotropic {
+                        roughness: Bound(self.roughness.scalar(d, surface)),
+                    },
+                },
+                base: Diffuse {
+                    albedo: Bound(self.albedo.color(d, surface)),
+                },
             },
         }
     }
@@ -274,7 +282,7 @@ pub(super) struct CasesRenderer {
 impl CasesRenderer {
     pub(super) fn new(lanes: LaneCount) -> Self {
         Self {
-            nodes: Nodes::of(&Kind::CoatedDiffuse.program(Inputs::Textures).0),
+            nodes: Nodes::of(&Kind::Coat.program(Inputs::Textures).0),
             lanes,
         }
     }

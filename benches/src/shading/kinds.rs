@@ -4,7 +4,8 @@ use std::fmt;
 
 use residual_render::bsdf::AnyInterface;
 use residual_render::program::{
-    BsdfNode, ColorNode, ImageNode, InputNode, Program, ScalarNode, SourceNode,
+    BsdfNode, ColorNode, FresnelNode, ImageNode, InputNode, Program, RoughnessNode, ScalarNode,
+    SourceNode,
 };
 use residual_render::record::BufferRecord;
 use residual_render::surface::Attributes;
@@ -18,7 +19,7 @@ pub enum Kind {
     /// A diffuse base, and this many Phong lobes added to it (thesis, Figure 3.4).
     Phong(usize),
     /// A diffuse base under a coat.
-    CoatedDiffuse,
+    Coat,
     /// A rough conductor.
     Metal,
     /// Smooth glass.
@@ -43,7 +44,7 @@ impl Kind {
         Self::Phong(1),
         Self::Phong(2),
         Self::Phong(3),
-        Self::CoatedDiffuse,
+        Self::Coat,
         Self::Metal,
         Self::Dielectric,
         Self::MetalAndCoat,
@@ -65,6 +66,7 @@ impl Kind {
             },
             inputs: builder.inputs,
             normal: None,
+            tangent: None,
             emission: None,
             bsdf,
             alpha_test: None,
@@ -80,7 +82,7 @@ impl fmt::Display for Kind {
             Self::Phong(1) => "diffuse + 1 Phong",
             Self::Phong(2) => "diffuse + 2 Phong",
             Self::Phong(_) => "diffuse + 3 Phong",
-            Self::CoatedDiffuse => "dielectric coat",
+            Self::Coat => "dielectric coat",
             Self::Metal => "metal",
             Self::Dielectric => "dielectric",
             Self::MetalAndCoat => "metal and coat",
@@ -118,15 +120,16 @@ impl Builder {
                 }
                 sum
             }
-            Kind::CoatedDiffuse => {
+            Kind::Coat => {
                 let albedo = self.color("albedo", 0.7);
                 let roughness = self.number("roughness", 0.4, 1);
                 self.coat(albedo, roughness)
             }
-            Kind::Metal => BsdfNode::Conductor {
-                color: self.color("albedo", 0.7),
-                roughness: self.number("roughness", 0.4, 1),
-            },
+            Kind::Metal => {
+                let color = self.color("albedo", 0.7);
+                let roughness = self.number("roughness", 0.4, 1);
+                self.metal(color, roughness)
+            }
             Kind::Dielectric => BsdfNode::Dielectric {
                 transmittance: self.color("transmittance", 0.7),
                 ior: self.parameter("ior", 1.5),
@@ -137,7 +140,7 @@ impl Builder {
                 let roughness = self.number("roughness", 0.4, 1);
                 BsdfNode::Mix {
                     a: Box::new(self.coat(color, roughness)),
-                    b: Box::new(BsdfNode::Conductor { color, roughness }),
+                    b: Box::new(self.metal(color, roughness)),
                     weight: self.number("metallic", 0.5, 2),
                 }
             }
@@ -146,15 +149,21 @@ impl Builder {
 
     fn coat(&mut self, albedo: Input, roughness: Input) -> BsdfNode {
         let reflectance = self.record(gray(0.04));
-        BsdfNode::CoatedDiffuse {
-            albedo,
-            roughness,
-            reflectance: self.input(
-                "reflectance",
-                SourceNode::Color(ColorNode::Param(reflectance)),
-            ),
-            grazing: self.parameter("grazing_reflectance", 0.9),
+        let normal = self.input(
+            "reflectance",
+            SourceNode::Color(ColorNode::Param(reflectance)),
+        );
+        let grazing = self.parameter("grazing_reflectance", 0.9);
+        BsdfNode::Coated {
+            coat: Box::new(facets(normal, grazing, roughness)),
+            base: Box::new(BsdfNode::Diffuse { albedo }),
         }
+    }
+
+    fn metal(&mut self, color: Input, roughness: Input) -> BsdfNode {
+        let one = SourceNode::Scalar(ScalarNode::Const(1.0));
+        let grazing = self.input("metal_grazing_reflectance", one);
+        facets(color, grazing, roughness)
     }
 
     fn with_lobe(&mut self, base: BsdfNode, lobe: usize) -> BsdfNode {
@@ -222,6 +231,13 @@ impl Builder {
         let offset = self.params.len() as u32;
         record.append_to(&mut self.params);
         offset
+    }
+}
+
+fn facets(normal: Input, grazing: Input, roughness: Input) -> BsdfNode {
+    BsdfNode::Glossy {
+        fresnel: FresnelNode::Schlick { normal, grazing },
+        roughness: RoughnessNode::Isotropic { roughness },
     }
 }
 

@@ -129,7 +129,7 @@ pub fn shading(
             cases: CasesRenderer::new(lanes),
         })
         .collect();
-    let coat = Kind::CoatedDiffuse.program(Inputs::Textures).1;
+    let coat = Kind::Coat.program(Inputs::Textures).1;
     let coats = stream::data(&Known::ALL.map(|_| coat.clone()));
     let mut contenders = Vec::new();
     for renderers in &renderers {

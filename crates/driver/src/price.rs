@@ -242,6 +242,7 @@ fn with_unused(effect: Effect, plan: &Plan) -> Option<Plan> {
             attributes: Attributes::NONE,
             inputs: Vec::new(),
             normal: None,
+            tangent: None,
             emission: None,
             bsdf: BsdfNode::Black,
             alpha_test: Some(AlphaTestNode::AlphaBlend {

@@ -2,15 +2,17 @@
 //! smooth dielectrics do.
 
 use residual_render::bsdf::{
-    Bsdf, BsdfSample, Conductor, Dielectric, Diffuse, Mirror, Mix, Solid, Sum, Thin,
+    Anisotropic, Bsdf, BsdfKind, BsdfSample, BsdfValue, Coated, Dielectric, Diffuse,
+    DiffuseTransmission, DirectionalAlbedo, Fresnel, Glossy, Isotropic, Mirror, Mix,
+    RoughDielectric, Roughness, Sheen, Solid, Sum, Thin, ThinFilm,
 };
 use residual_render::domain::{Buffers, Scalar};
-use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
+use residual_render::math::{Color, Vec3};
 use residual_render::surface::Surface;
 use residual_render::texture::Const;
 
-use crate::support::bsdfs::{WHITE, coated, conductor, phong, view};
+use crate::support::bsdfs::{Facets, WHITE, coated, conductor, metal, phong, view};
 use crate::support::random::Rng;
 use crate::support::scenes::{FLOOR, floor, scene, surface_at};
 use crate::support::{Worst, array, dot};
@@ -49,22 +51,59 @@ fn asymmetry<B: for<'a> Bsdf<Scalar<'a>>>(name: &str, bsdf: &B) {
     worst.assert_below(1e-4, &format!("{name}: asymmetry, relative"));
 }
 
+/// Facets without what they throw at one another, which is scaled by what is seen from `wo` alone.
+struct SingleReflection(Facets);
+
+impl<'a> Bsdf<Scalar<'a>> for SingleReflection {
+    fn eval(
+        &self,
+        d: Scalar<'a>,
+        surface: &Surface<Scalar<'a>>,
+        wo: Vec3<f32>,
+        wi: Vec3<f32>,
+    ) -> BsdfValue<Scalar<'a>> {
+        let BsdfValue { value, pdf } = self.0.eval(d, surface, wo, wi);
+        let ggx = self.0.roughness.microfacets(d, surface);
+        let curve = self.0.fresnel.curve(d, surface, wo.z);
+        let all = DirectionalAlbedo::new(d, &ggx, wo.z).compensation(d, &curve);
+        let value = vec3(value.x / all.x, value.y / all.y, value.z / all.z);
+        BsdfValue { value, pdf }
+    }
+
+    fn sample(
+        &self,
+        d: Scalar<'a>,
+        surface: &Surface<Scalar<'a>>,
+        wo: Vec3<f32>,
+        u: [f32; 3],
+    ) -> BsdfSample<Scalar<'a>> {
+        self.0.sample(d, surface, wo, u)
+    }
+
+    fn albedo(&self, d: Scalar<'a>, surface: &Surface<Scalar<'a>>, wo: Vec3<f32>) -> Color<f32> {
+        self.0.albedo(d, surface, wo)
+    }
+
+    fn kind(&self) -> BsdfKind {
+        BsdfKind {
+            scatters: true,
+            delta: false,
+        }
+    }
+}
+
 #[test]
 fn reciprocity() {
     for roughness in [0.05, 0.1, 0.3, 1.0] {
-        let gold = Conductor {
-            color: Const([0.5; 3]),
-            roughness: Const(roughness),
-        };
+        let gold = SingleReflection(metal([0.5; 3], roughness));
         asymmetry(&format!("conductor {roughness}"), &gold);
-        asymmetry(&format!("coated {roughness}"), &coated(roughness, 0.04));
     }
     for exponent in [1.0, 20.0, 100.0] {
         asymmetry(&format!("phong {exponent}"), &phong(exponent));
     }
     let mix = Mix {
         a: Diffuse { albedo: WHITE },
-        b: conductor(0.2),
+        b: SingleReflection(conductor(0.2)),
         weight: Const(0.4),
     };
     asymmetry("mix", &mix);
@@ -80,7 +119,11 @@ fn reciprocity() {
 
 #[test]
 fn degenerate_directions_give_finite_values() {
+    /// Where nothing passes, directions below give nothing.
     fn check<B: for<'a> Bsdf<Scalar<'a>>>(name: &str, bsdf: &B) {
+        check_sides(name, bsdf, true);
+    }
+    fn check_sides<B: for<'a> Bsdf<Scalar<'a>>>(name: &str, bsdf: &B, is_opaque: bool) {
         let data = scene(&[FLOOR]);
         let buffers = data.buffers();
         let d = Scalar::new(&buffers);
@@ -98,7 +141,7 @@ fn degenerate_directions_give_finite_values() {
                     all.iter().all(|c| c.is_finite() && *c >= 0.0),
                     "{name} {wo:?} {wi:?}: {value:?}"
                 );
-                let none = wi.z <= 0.0;
+                let none = is_opaque && wi.z <= 0.0;
                 assert!(!none || all == [0.0; 4], "{name} {wo:?} {wi:?}: {value:?}");
             }
             for u in [0.0, 0.5, below_one] {
@@ -128,6 +171,49 @@ fn degenerate_directions_give_finite_values() {
         check("conductor", &conductor(roughness));
         check("coated", &coated(roughness, 0.04));
     }
+    for roughness in [0.0, 0.1, 1.0].map(Const) {
+        let sheen = Sheen {
+            color: WHITE,
+            roughness,
+        };
+        check("sheen", &sheen);
+        let base = Diffuse { albedo: WHITE };
+        check("cloth", &Coated { coat: sheen, base });
+        let brushed = Anisotropic {
+            roughness,
+            anisotropy: Const(1.0),
+        };
+        let film = ThinFilm {
+            normal: WHITE,
+            grazing: Const(1.0),
+            strength: Const(1.0),
+            ior: Const(1.3),
+            thickness: roughness,
+        };
+        let glossy = Glossy {
+            fresnel: film,
+            roughness: brushed,
+        };
+        check("brushed film", &glossy);
+        for ior in [1.001, 1.5, 3.0].map(Const) {
+            let roughness = Isotropic { roughness };
+            let solid = RoughDielectric {
+                transmittance: WHITE,
+                ior,
+                roughness,
+                interface: Solid,
+            };
+            check_sides("frosted solid", &solid, false);
+            let thin = RoughDielectric {
+                transmittance: WHITE,
+                ior,
+                roughness,
+                interface: Thin,
+            };
+            check_sides("frosted sheet", &thin, false);
+        }
+    }
+    check_sides("paper", &DiffuseTransmission { color: WHITE }, false);
     for exponent in [0.0, 1.0, 1e4] {
         check("phong", &phong(exponent));
     }

@@ -1,13 +1,14 @@
 //! BSDF sampling against its own density: χ² in slopes of the half vector, so that every lobe is resolved
 //! (hard case M-02), weights against value ÷ density (M-03), and the mass of the density.
 
-use residual_render::bsdf::{Bsdf, CoatedDiffuse, Conductor, Diffuse, Mix, Phong, Sum};
+use residual_render::bsdf::{Anisotropic, Bsdf, Coated, Diffuse, Glossy, Mix, Phong, Sheen, Sum};
 use residual_render::domain::{Buffers, Precise, Scalar};
 use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
 use residual_render::scene_data::SceneData;
 use residual_render::texture::Const;
 
+use crate::support::bsdfs::{Facets, Plastic, metal, plastic};
 use crate::support::random::Rng;
 use crate::support::scenes::{FLOOR, floor, scene};
 use crate::support::stats::{Family, chi_squared};
@@ -230,21 +231,11 @@ impl<B: for<'b> Bsdf<Scalar<'b>> + for<'b> Bsdf<Precise<'b>>> Case<'_, B> {
 const WHITE: Const<[f32; 3]> = Const([1.0; 3]);
 const BASE: Const<[f32; 3]> = Const([0.8, 0.5, 0.3]);
 
-fn conductor(roughness: f32) -> Conductor<Const<[f32; 3]>, Const<f32>> {
-    Conductor {
-        color: BASE,
-        roughness: Const(roughness),
-    }
+fn conductor(roughness: f32) -> Facets {
+    metal(BASE.0, roughness)
 }
-fn coated(
-    roughness: f32,
-) -> CoatedDiffuse<Const<[f32; 3]>, Const<f32>, Const<[f32; 3]>, Const<f32>> {
-    CoatedDiffuse {
-        albedo: BASE,
-        roughness: Const(roughness),
-        reflectance: Const([0.04; 3]),
-        grazing: Const(1.0),
-    }
+fn coated(roughness: f32) -> Plastic {
+    plastic(BASE.0, roughness, [0.04, 1.0])
 }
 fn alpha(roughness: f32) -> f64 {
     f64::from(roughness * roughness)
@@ -294,6 +285,61 @@ fn coated_diffuse() {
             data: &data,
         }
         .check(&mut family, 1e-4, 1e-5);
+    }
+    family.assert_plausible();
+}
+
+/// Rougher along the tangent: χ² in all directions around.
+#[test]
+fn brushed_conductors() {
+    let data = scene(&[FLOOR]);
+    let mut family = Family::default();
+    for (roughness, anisotropy) in [(0.1, 0.3), (0.3, 0.7), (0.5, 1.0)] {
+        let bsdf = Glossy {
+            fresnel: conductor(0.0).fresnel,
+            roughness: Anisotropic {
+                roughness: Const(roughness),
+                anisotropy: Const(anisotropy),
+            },
+        };
+        Case {
+            name: format!("brushed {roughness}, {anisotropy}"),
+            bsdf,
+            scale: alpha(roughness),
+            data: &data,
+        }
+        .check(&mut family, 1e-4, 5e-2);
+    }
+    family.assert_plausible();
+}
+
+#[test]
+fn cloth() {
+    let data = scene(&[FLOOR]);
+    let mut family = Family::default();
+    for roughness in [0.1, 0.3, 0.7, 1.0] {
+        let sheen = Sheen {
+            color: BASE,
+            roughness: Const(roughness),
+        };
+        Case {
+            name: format!("sheen {roughness}"),
+            bsdf: sheen,
+            scale: 1.0,
+            data: &data,
+        }
+        .check(&mut family, 1e-3, 1e-3);
+        let cloth = Coated {
+            coat: sheen,
+            base: Diffuse { albedo: BASE },
+        };
+        Case {
+            name: format!("cloth {roughness}"),
+            bsdf: cloth,
+            scale: 1.0,
+            data: &data,
+        }
+        .check(&mut family, 1e-3, 1e-3);
     }
     family.assert_plausible();
 }

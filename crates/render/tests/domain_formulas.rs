@@ -1,7 +1,8 @@
 //! The `f32` domains give the same bits: whole formulas, of samplers, BSDFs, lights and textures.
 
 use residual_render::bsdf::{
-    Bsdf, CoatedDiffuse, Conductor, Dielectric, Diffuse, Mirror, Mix, Phong, Solid, Sum, Thin,
+    Anisotropic, Bsdf, Coated, Dielectric, Diffuse, DiffuseTransmission, Glossy, Isotropic, Mirror,
+    Mix, Phong, RoughDielectric, Sheen, Solid, Sum, Thin, ThinFilm,
 };
 use residual_render::domain::{Buffer, Domain, Lanes};
 use residual_render::light::{
@@ -18,6 +19,7 @@ use residual_render::texture::{
 };
 
 use crate::support::agreement::{Formula, any_bits, check, reals, truth, vector, words};
+use crate::support::bsdfs::{metal, plastic};
 use crate::support::random::Rng;
 use crate::support::scenes::{FLOOR, floor, scene, set_environment, set_lights, set_params};
 
@@ -79,9 +81,22 @@ const RED: Const<[f32; 3]> = Const([0.9, 0.5, 0.1]);
 fn bsdfs_agree() {
     check_bsdfs! {
         "diffuse" Diffuse { albedo: RED };
-        "conductor" Conductor { color: RED, roughness: Const(0.3) };
-        "smooth conductor" Conductor { color: RED, roughness: Const(0.0) };
-        "coated" CoatedDiffuse { albedo: RED, roughness: Const(0.2), reflectance: Const([0.04; 3]), grazing: Const(1.0) };
+        "conductor" metal(RED.0, 0.3);
+        "smooth conductor" metal(RED.0, 0.0);
+        "coated" plastic(RED.0, 0.2, [0.04, 1.0]);
+        "brushed conductor" Glossy {
+            fresnel: metal(RED.0, 0.0).fresnel,
+            roughness: Anisotropic { roughness: Const(0.3), anisotropy: Const(0.7) },
+        };
+        "film" Glossy {
+            fresnel: ThinFilm { normal: RED, grazing: Const(1.0), strength: Const(0.8), ior: Const(1.33), thickness: Const(420.0) },
+            roughness: Isotropic { roughness: Const(0.2) },
+        };
+        "sheen" Sheen { color: RED, roughness: Const(0.4) };
+        "cloth" Coated { coat: Sheen { color: RED, roughness: Const(0.6) }, base: Diffuse { albedo: RED } };
+        "paper" DiffuseTransmission { color: RED };
+        "frosted" RoughDielectric { transmittance: RED, ior: Const(1.5), roughness: Isotropic { roughness: Const(0.3) }, interface: Solid };
+        "frosted sheet" RoughDielectric { transmittance: RED, ior: Const(1.4), roughness: Isotropic { roughness: Const(0.5) }, interface: Thin };
         "solid" Dielectric { transmittance: RED, ior: Const(1.5), interface: Solid };
         "thin" Dielectric { transmittance: RED, ior: Const(1.33), interface: Thin };
         "phong" Phong { color: RED, exponent: Const(40.0) };
@@ -89,7 +104,7 @@ fn bsdfs_agree() {
         "mix" Mix { a: Diffuse { albedo: RED }, b: Dielectric { transmittance: RED, ior: Const(1.5), interface: Solid }, weight: Const(0.4) };
         "sum" Sum {
             a: Diffuse { albedo: RED },
-            b: Mix { a: Phong { color: RED, exponent: Const(9.0) }, b: Conductor { color: RED, roughness: Const(0.6) }, weight: Const(0.3) },
+            b: Mix { a: Phong { color: RED, exponent: Const(9.0) }, b: metal(RED.0, 0.6), weight: Const(0.3) },
             probability: Const(0.5)
         };
     }

@@ -6,6 +6,7 @@ mod bsdf_albedo;
 mod bsdf_furnace;
 mod bsdf_physics;
 mod bsdf_sampling;
+mod bsdf_transmission;
 mod domain;
 mod domain_formulas;
 mod elementary;

@@ -17,8 +17,12 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
     Some(match effect {
         Effect::DielectricCoat => "matte",
         Effect::MetallicReflection => "matte, of the same colour",
+        Effect::ClearCoat | Effect::Sheen => "without it",
+        Effect::Anisotropy => "as rough in all directions",
+        Effect::Iridescence => "without a film",
+        Effect::RoughTransmission => "smooth",
         Effect::PhongReflection | Effect::MirrorReflection => "matte",
-        Effect::ThinTransmission | Effect::Refraction => "opaque",
+        Effect::ThinTransmission | Effect::Refraction | Effect::DiffuseTransmission => "opaque",
         Effect::Textures => "their mean values; alpha, normal maps and emission stay",
         Effect::ProceduralTextures => "the mean of their colours",
         Effect::BilinearFilter => "the nearest texel",
@@ -129,6 +133,24 @@ fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
             Effect::ThinTransmission | Effect::Refraction,
             SurfaceDesc::MetallicRoughness(surface),
         ) => surface.transmission = number(0.0),
+        (Effect::RoughTransmission, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.roughness = number(0.0);
+        }
+        (Effect::DiffuseTransmission, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.diffuse_transmission = number(0.0);
+        }
+        (Effect::ClearCoat, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.clearcoat = number(0.0);
+        }
+        (Effect::Sheen, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.sheen_color = plain([0.0; 3]);
+        }
+        (Effect::Anisotropy, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.anisotropy = number(0.0);
+        }
+        (Effect::Iridescence, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.iridescence = number(0.0);
+        }
         (Effect::PhongReflection, SurfaceDesc::Phong(surface)) => {
             surface.specular = plain([0.0; 3]);
         }

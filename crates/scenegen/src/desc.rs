@@ -207,7 +207,7 @@ pub struct MaterialDesc {
 /// How a surface scatters light.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SurfaceDesc {
-    /// glTF 2.0, appendix B, with KHR_materials_specular, _ior, _transmission, _volume (thickness only).
+    /// glTF 2.0, appendix B, with the extensions that it has fields for.
     MetallicRoughness(MetallicRoughness),
     /// OBJ: Lambert plus normalised Phong. The two reflect no more than arrives.
     Phong(PhongSurface),
@@ -239,7 +239,7 @@ pub enum SurfaceDesc {
     },
 }
 
-/// glTF's metallic-roughness surface.
+/// glTF's metallic-roughness surface with its layers. What a factor of 0 leaves out is not there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MetallicRoughness {
     /// Base colour; multiplied by `COLOR_0` where the mesh has one.
@@ -259,6 +259,79 @@ pub struct MetallicRoughness {
     /// KHR_materials_volume with `thicknessFactor` > 0: transmitted rays refract into a solid.
     /// Without it the surface is thin: what is transmitted goes straight on.
     pub solid: bool,
+    /// KHR_materials_diffuse_transmission: the share of the diffuse light that passes (alpha channel).
+    pub diffuse_transmission: ScalarInput,
+    /// KHR_materials_diffuse_transmission: its colour.
+    pub diffuse_transmission_color: ColorInput,
+    /// KHR_materials_anisotropy: how much rougher the surface is along its direction (blue channel). Its texture's red and
+    /// green are that direction, 2·rg − 1 along tangent and bitangent.
+    pub anisotropy: ScalarInput,
+    /// KHR_materials_anisotropy: angle from the tangent, or from the texture's direction, counter-clockwise in radians.
+    pub anisotropy_rotation: f32,
+    /// KHR_materials_iridescence: how much of the surface is under a thin film.
+    pub iridescence: ScalarInput,
+    /// KHR_materials_iridescence: the film's index of refraction, at least 1.
+    pub iridescence_ior: f32,
+    /// KHR_materials_iridescence: the film's thickness in nanometres where the texture (green channel) is 0.
+    pub iridescence_minimum: f32,
+    /// KHR_materials_iridescence: the film's thickness in nanometres where the texture is 1, or everywhere.
+    pub iridescence_thickness: ScalarInput,
+    /// KHR_materials_sheen: colour.
+    pub sheen_color: ColorInput,
+    /// KHR_materials_sheen: roughness (alpha channel).
+    pub sheen_roughness: ScalarInput,
+    /// KHR_materials_clearcoat: strength (red channel).
+    pub clearcoat: ScalarInput,
+    /// KHR_materials_clearcoat: roughness (green channel).
+    pub clearcoat_roughness: ScalarInput,
+}
+
+impl Default for MetallicRoughness {
+    /// glTF's defaults: a white metal of roughness 1, without any layer.
+    fn default() -> Self {
+        Self {
+            base_color: ColorInput::constant([1.0; 3]),
+            metallic: ScalarInput::constant(1.0),
+            roughness: ScalarInput::constant(1.0),
+            ior: 1.5,
+            specular: ScalarInput::constant(1.0),
+            specular_color: ColorInput::constant([1.0; 3]),
+            transmission: ScalarInput::constant(0.0),
+            solid: false,
+            diffuse_transmission: ScalarInput::constant(0.0),
+            diffuse_transmission_color: ColorInput::constant([1.0; 3]),
+            anisotropy: ScalarInput::constant(0.0),
+            anisotropy_rotation: 0.0,
+            iridescence: ScalarInput::constant(0.0),
+            iridescence_ior: 1.3,
+            iridescence_minimum: 100.0,
+            iridescence_thickness: ScalarInput::constant(400.0),
+            sheen_color: ColorInput::constant([0.0; 3]),
+            sheen_roughness: ScalarInput::constant(0.0),
+            clearcoat: ScalarInput::constant(0.0),
+            clearcoat_roughness: ScalarInput::constant(0.0),
+        }
+    }
+}
+
+impl ColorInput {
+    /// A colour without a texture.
+    pub fn constant(factor: [f32; 3]) -> Self {
+        Self {
+            factor,
+            texture: None,
+        }
+    }
+}
+
+impl ScalarInput {
+    /// A number without a texture.
+    pub fn constant(factor: f32) -> Self {
+        Self {
+            factor,
+            texture: None,
+        }
+    }
 }
 
 /// OBJ's Lambert plus Phong surface.

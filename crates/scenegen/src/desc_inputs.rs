@@ -35,6 +35,18 @@ macro_rules! surface_inputs {
                 specular_color,
                 transmission,
                 solid: _,
+                diffuse_transmission,
+                diffuse_transmission_color,
+                anisotropy,
+                anisotropy_rotation: _,
+                iridescence,
+                iridescence_ior: _,
+                iridescence_minimum: _,
+                iridescence_thickness,
+                sheen_color,
+                sheen_roughness,
+                clearcoat,
+                clearcoat_roughness,
             }) => vec![
                 ("base_color", Color(base_color)),
                 ("metallic", Scalar(metallic)),
@@ -42,6 +54,18 @@ macro_rules! surface_inputs {
                 ("specular", Scalar(specular)),
                 ("specular_color", Color(specular_color)),
                 ("transmission", Scalar(transmission)),
+                ("diffuse_transmission", Scalar(diffuse_transmission)),
+                (
+                    "diffuse_transmission_color",
+                    Color(diffuse_transmission_color),
+                ),
+                ("anisotropy", Scalar(anisotropy)),
+                ("iridescence", Scalar(iridescence)),
+                ("iridescence_thickness", Scalar(iridescence_thickness)),
+                ("sheen_color", Color(sheen_color)),
+                ("sheen_roughness", Scalar(sheen_roughness)),
+                ("clearcoat", Scalar(clearcoat)),
+                ("clearcoat_roughness", Scalar(clearcoat_roughness)),
             ],
             SurfaceDesc::Phong(PhongSurface {
                 diffuse,
@@ -115,6 +139,20 @@ impl MaterialDesc {
     /// The inputs of the surface, then the others, with the names of their fields, to be changed.
     pub fn inputs_mut(&mut self) -> Vec<(&'static str, InputMut<'_>)> {
         material_inputs!(self)
+    }
+
+    /// The set of texture coordinates that tangents follow; `None` where none are needed.
+    pub fn tangent_uv_set(&self) -> Option<usize> {
+        if let Some(map) = &self.normal_map {
+            return Some(map.texture.uv_set);
+        }
+        match &self.surface {
+            SurfaceDesc::MetallicRoughness(surface) if surface.anisotropy.factor > 0.0 => {
+                let texture = surface.anisotropy.texture.as_ref();
+                Some(texture.map_or(0, |(texture, _)| texture.uv_set))
+            }
+            _ => None,
+        }
     }
 
     /// The textures that the inputs are read from.

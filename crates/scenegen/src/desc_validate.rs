@@ -117,6 +117,21 @@ impl SceneDesc {
                 let is_valid =
                     surface.ior.is_finite() && (surface.ior == 0.0 || surface.ior >= 1.0);
                 require(is_valid, || place("ior"), "is neither 0 nor at least 1")?;
+                require(
+                    surface.anisotropy_rotation.is_finite(),
+                    || place("anisotropy_rotation"),
+                    "is not finite",
+                )?;
+                require(
+                    surface.iridescence_ior.is_finite() && surface.iridescence_ior >= 1.0,
+                    || place("iridescence_ior"),
+                    "is not at least 1",
+                )?;
+                require(
+                    surface.iridescence_minimum.is_finite() && surface.iridescence_minimum >= 0.0,
+                    || place("iridescence_minimum"),
+                    "is not finite and non-negative",
+                )?;
             }
             SurfaceDesc::Phong(_) | SurfaceDesc::Mirror { .. } | SurfaceDesc::Unlit => {}
             SurfaceDesc::Checkerboard { squares, .. } => require(

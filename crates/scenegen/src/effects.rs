@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 
 use residual_render::bsdf::AnyInterface;
 use residual_render::program::{
-    AlphaTestNode, BsdfNode, CameraNode, ImageNode, Leaf, LightNode, Program, Source, SourceNode,
+    AlphaTestNode, BsdfNode, CameraNode, FresnelNode, ImageNode, Leaf, LightNode, Program,
+    RoughnessNode, Source, SourceNode,
 };
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, UvMap};
 
@@ -109,11 +110,40 @@ impl Effects {
     }
 
     fn add_bsdf(&mut self, node: &BsdfNode, place: &str) {
+        if let BsdfNode::Coated { coat, base } = node {
+            self.add(coat_effect(coat, base), place);
+            if let BsdfNode::Glossy { fresnel, roughness } = &**coat {
+                self.add_facets(Some(fresnel), roughness, place);
+            }
+            return self.add_bsdf(base, place);
+        }
         for child in node.children() {
             self.add_bsdf(child, place);
         }
         for effect in bsdf_effects(node) {
             self.add(*effect, place);
+        }
+        match node {
+            BsdfNode::Glossy { fresnel, roughness } => {
+                self.add_facets(Some(fresnel), roughness, place);
+            }
+            BsdfNode::RoughDielectric { roughness, .. } => self.add_facets(None, roughness, place),
+            _ => {}
+        }
+    }
+
+    fn add_facets(
+        &mut self,
+        fresnel: Option<&FresnelNode>,
+        roughness: &RoughnessNode,
+        place: &str,
+    ) {
+        if let Some(FresnelNode::ThinFilm { .. }) = fresnel {
+            self.add(Effect::Iridescence, place);
+        }
+        match roughness {
+            RoughnessNode::Isotropic { .. } => {}
+            RoughnessNode::Anisotropic { .. } => self.add(Effect::Anisotropy, place),
         }
     }
 
@@ -162,16 +192,39 @@ impl<'a> Caller<'a> {
     }
 }
 
-/// The effects of a BSDF itself, without those of the BSDFs that it combines.
+/// What a coat is: on a matte surface the reflection of a dielectric, on others a clear coat.
+fn coat_effect(coat: &BsdfNode, base: &BsdfNode) -> Effect {
+    match coat {
+        BsdfNode::Sheen { .. } => Effect::Sheen,
+        _ if is_matte(base) => Effect::DielectricCoat,
+        _ => Effect::ClearCoat,
+    }
+}
+
+fn is_matte(bsdf: &BsdfNode) -> bool {
+    match bsdf {
+        BsdfNode::Black | BsdfNode::Diffuse { .. } | BsdfNode::DiffuseTransmission { .. } => true,
+        BsdfNode::Mix { a, b, .. } => is_matte(a) && is_matte(b),
+        _ => false,
+    }
+}
+
+/// The effects of a BSDF itself, without those of the BSDFs that it combines and of its facets.
 fn bsdf_effects(bsdf: &BsdfNode) -> &'static [Effect] {
     match bsdf {
         BsdfNode::Black => &[],
         BsdfNode::Diffuse { .. } => &[Effect::DiffuseReflection],
-        BsdfNode::Conductor { .. } => &[Effect::MetallicReflection],
-        BsdfNode::CoatedDiffuse { .. } => &[Effect::DiffuseReflection, Effect::DielectricCoat],
+        BsdfNode::DiffuseTransmission { .. } => &[Effect::DiffuseTransmission],
+        BsdfNode::Glossy { .. } => &[Effect::MetallicReflection],
+        BsdfNode::Sheen { .. } => &[Effect::Sheen],
+        BsdfNode::Coated { .. } => &[],
         BsdfNode::Dielectric { interface, .. } => match interface {
             AnyInterface::Solid => &[Effect::Refraction],
             AnyInterface::Thin => &[Effect::ThinTransmission],
+        },
+        BsdfNode::RoughDielectric { interface, .. } => match interface {
+            AnyInterface::Solid => &[Effect::Refraction, Effect::RoughTransmission],
+            AnyInterface::Thin => &[Effect::ThinTransmission, Effect::RoughTransmission],
         },
         BsdfNode::Phong { .. } => &[Effect::PhongReflection],
         BsdfNode::Mirror { .. } => &[Effect::MirrorReflection],

@@ -6,7 +6,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use common::gltf_text::{F32, Gltf, U8, f32_bytes, warns};
 use residual_scenegen::desc::{
-    AlphaMode, Filter, MaterialDesc, MetallicRoughness, SurfaceDesc, Texels, Wrap,
+    AlphaMode, Filter, MaterialDesc, MetallicRoughness, ScalarInput, SurfaceDesc, Texels, Wrap,
 };
 use residual_scenegen::import::{ImportError, ImportOptions};
 use serde_json::{Value, json};
@@ -178,7 +178,7 @@ fn extensions_that_are_not_rendered_are_named_with_their_material() {
     let scene = square_with(json!({
         "name": "paint",
         "extensions": {
-            "KHR_materials_clearcoat": { "clearcoatFactor": 1 },
+            "KHR_materials_volume_scatter": { "multiscatterColor": [1, 1, 1] },
             "KHR_materials_sheen": { "sheenColorFactor": [0, 0, 0] },
             "KHR_materials_iridescence": {},
             "ACME_glitter": {},
@@ -189,7 +189,7 @@ fn extensions_that_are_not_rendered_are_named_with_their_material() {
     assert!(warns(
         &scene,
         "materials/0 \"paint\"",
-        "KHR_materials_clearcoat"
+        "KHR_materials_volume_scatter"
     ));
     assert!(warns(&scene, "materials/0 \"paint\"", "ACME_glitter"));
     assert_eq!(
@@ -206,6 +206,112 @@ fn extensions_that_are_not_rendered_are_named_with_their_material() {
     }) {
         Err(ImportError::Strict { warnings, .. }) => assert_eq!(warnings.len(), 1),
         other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn layers_are_read() {
+    let texture = |index| json!({ "index": 0, "texCoord": index });
+    let scene = square_with(json!({ "extensions": {
+        "KHR_materials_clearcoat": {
+            "clearcoatFactor": 0.5,
+            "clearcoatTexture": texture(1),
+            "clearcoatRoughnessFactor": 0.25,
+            "clearcoatRoughnessTexture": texture(0),
+        },
+        "KHR_materials_sheen": {
+            "sheenColorFactor": [0.1, 0.2, 0.3],
+            "sheenColorTexture": texture(0),
+            "sheenRoughnessFactor": 0.7,
+        },
+        "KHR_materials_anisotropy": {
+            "anisotropyStrength": 0.6,
+            "anisotropyRotation": 0.5,
+            "anisotropyTexture": texture(0),
+        },
+        "KHR_materials_iridescence": {
+            "iridescenceFactor": 0.9,
+            "iridescenceIor": 1.4,
+            "iridescenceThicknessMinimum": 120,
+            "iridescenceThicknessMaximum": 380,
+            "iridescenceThicknessTexture": texture(0),
+        },
+        "KHR_materials_diffuse_transmission": {
+            "diffuseTransmissionFactor": 0.3,
+            "diffuseTransmissionTexture": texture(0),
+            "diffuseTransmissionColorFactor": [0.9, 0.8, 0.7],
+        },
+    }}))
+    .import()
+    .unwrap();
+    let surface = surface(&scene.materials[0]);
+    let channel = |input: &ScalarInput| input.texture.as_ref().map(|(_, channel)| *channel);
+    assert_eq!(
+        [
+            &surface.clearcoat,
+            &surface.clearcoat_roughness,
+            &surface.sheen_roughness,
+            &surface.anisotropy,
+            &surface.iridescence,
+            &surface.iridescence_thickness,
+            &surface.diffuse_transmission,
+        ]
+        .map(|input| (input.factor, channel(input))),
+        [
+            (0.5, Some(0)),
+            (0.25, Some(1)),
+            (0.7, None),
+            (0.6, Some(2)),
+            (0.9, None),
+            (380.0, Some(1)),
+            (0.3, Some(3)),
+        ]
+    );
+    assert_eq!(surface.clearcoat.texture.as_ref().unwrap().0.uv_set, 1);
+    assert_eq!(
+        (surface.anisotropy_rotation, surface.iridescence_ior),
+        (0.5, 1.4)
+    );
+    assert_eq!(surface.iridescence_minimum, 120.0);
+    assert_eq!(surface.sheen_color.factor, [0.1, 0.2, 0.3]);
+    assert!(surface.sheen_color.texture.is_some());
+    assert_eq!(surface.diffuse_transmission_color.factor, [0.9, 0.8, 0.7]);
+    // An anisotropic surface needs tangents.
+    assert!(scene.meshes[0].tangents.is_some());
+    assert_eq!(scene.warnings, []);
+}
+
+#[test]
+fn layers_that_make_no_sense_cost_themselves_alone() {
+    let scene = square_with(json!({ "extensions": {
+        "KHR_materials_clearcoat": { "clearcoatFactor": "much", "clearcoatRoughnessFactor": -1 },
+        "KHR_materials_sheen": { "sheenColorFactor": [1, 2] },
+        "KHR_materials_iridescence": { "iridescenceFactor": 1e30, "iridescenceIor": 0.5 },
+    }}))
+    .import()
+    .unwrap();
+    let surface = surface(&scene.materials[0]);
+    assert_eq!(
+        (
+            surface.clearcoat.factor,
+            surface.clearcoat_roughness.factor,
+            surface.iridescence.factor,
+            surface.iridescence_ior,
+        ),
+        (0.0, 0.0, 1.0, 1.0)
+    );
+    for message in [
+        "clearcoatFactor is no number",
+        "clearcoatRoughnessFactor -1 is out of range",
+        "sheenColorFactor is no colour",
+        "iridescenceFactor",
+        "iridescenceIor 0.5 is out of range",
+    ] {
+        assert!(
+            warns(&scene, "materials/0", message),
+            "{message}: {:?}",
+            scene.warnings
+        );
     }
 }
 

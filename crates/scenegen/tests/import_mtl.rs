@@ -227,9 +227,18 @@ fn roughness_and_metalness_are_read() {
     let channels =
         [&mapped.metallic, &mapped.roughness].map(|input| input.texture.as_ref().unwrap().1);
     assert_eq!(channels, [2, 0]);
-    let (_, scene) = material("Pr 0.5\nPc 1\nPcr 0.03\nPs 0\naniso 0\nanisor 0\nmap_Ps kd.png");
+    let coated = surface("Pr 0.5\nPc 0.75\nPcr 0.03\naniso 0.5\nanisor 0.25");
+    assert_eq!(
+        (coated.clearcoat.factor, coated.clearcoat_roughness.factor),
+        (0.75, 0.03)
+    );
+    assert_eq!(
+        (coated.anisotropy.factor, coated.anisotropy_rotation),
+        (0.5, std::f32::consts::FRAC_PI_2)
+    );
+    let (_, scene) = material("Pr 0.5\nPs 0.5\nmap_Ps kd.png");
     assert!(
-        warns(&scene, "m", "pc: a clear coat is not rendered"),
+        warns(&scene, "m", "ps: sheen is not rendered"),
         "{:?}",
         scene.warnings
     );

@@ -29,15 +29,20 @@ pub struct Sum<A, B, P> {
 }
 
 /// Factors on two BSDFs and the probability of sampling the second.
-struct Blend<F> {
-    factor_a: F,
-    factor_b: F,
-    probability_b: F,
+pub(super) struct Blend<F> {
+    pub(super) factor_a: F,
+    pub(super) factor_b: F,
+    pub(super) probability_b: F,
 }
 
 impl<F: crate::domain::Real> Blend<F> {
     #[inline(always)]
-    fn eval<D: Domain<F = F>>(&self, d: D, a: BsdfValue<D>, b: BsdfValue<D>) -> BsdfValue<D> {
+    pub(super) fn eval<D: Domain<F = F>>(
+        &self,
+        d: D,
+        a: BsdfValue<D>,
+        b: BsdfValue<D>,
+    ) -> BsdfValue<D> {
         let probability_a = d.lit(1.0) - self.probability_b;
         BsdfValue {
             value: a.value.scale(self.factor_a) + b.value.scale(self.factor_b),
@@ -47,7 +52,7 @@ impl<F: crate::domain::Real> Blend<F> {
 
     /// One-sample multiple importance sampling: a direction from either, weighed by both.
     #[inline(always)]
-    fn sample<D: Domain<F = F>, A: Bsdf<D>, B: Bsdf<D>>(
+    pub(super) fn sample<D: Domain<F = F>, A: Bsdf<D>, B: Bsdf<D>>(
         &self,
         d: D,
         surface: &Surface<D>,

@@ -7,21 +7,38 @@
 //! To add a BSDF: write one file with a struct generic over its sources, implement [`Bsdf`], and give it a row in the
 //! node table (`program/nodes.rs`).
 
-mod coated_diffuse;
+mod coated;
 mod combine;
 mod dielectric;
 mod diffuse;
-pub mod microfacet;
+mod diffuse_transmission;
+mod directional_albedo;
+mod fresnel;
+pub mod ggx;
+mod glossy;
+mod interface;
 mod mirror;
 mod phong;
+mod rough_dielectric;
+mod roughness;
+mod sheen;
+mod thin_film;
 
-pub use coated_diffuse::CoatedDiffuse;
+pub use coated::Coated;
 pub use combine::{Mix, Sum};
-pub use dielectric::{AnyInterface, Dielectric, Interface, Solid, Thin, fresnel};
+pub use dielectric::Dielectric;
 pub use diffuse::{Black, Diffuse};
-pub use microfacet::Conductor;
+pub use diffuse_transmission::DiffuseTransmission;
+pub use directional_albedo::DirectionalAlbedo;
+pub use fresnel::{Fresnel, Schlick, SchlickCurve, fresnel, schlick_weight};
+pub use glossy::Glossy;
+pub use interface::{AnyInterface, Interface, Solid, Thin};
 pub use mirror::Mirror;
 pub use phong::Phong;
+pub use rough_dielectric::RoughDielectric;
+pub use roughness::{Anisotropic, Isotropic, Roughness};
+pub use sheen::Sheen;
+pub use thin_film::ThinFilm;
 
 use crate::domain::{Bundle, Domain};
 use crate::math::{Color, Vec3};
@@ -75,10 +92,10 @@ pub trait Bsdf<D: Domain> {
     fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D>;
     /// A direction, from two numbers for the direction and one for the choice of a lobe.
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D>;
-    /// The share of light that returns towards `wo`, for denoisers: what Open Image Denoise wants as the albedo of a first
-    /// hit. Between 0 and 1 where the sources are; it needs no integral, so where the true share has no closed form it
-    /// is the Fresnel-weighted colour of a smooth surface. It may go with what is seen through a surface: a window's is
-    /// its tint.
+    /// The share of light that returns towards `wo`: what is left for layers below ([`Coated`]), and what Open Image Denoise
+    /// wants as the albedo of a first hit. Between 0 and 1 where the sources are. Where the true share has no closed form it
+    /// is a fit, or, of lobes that are no coats, an estimate. It may go with what is seen through a surface: a window's is its
+    /// tint.
     fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F>;
     /// The squared index of refraction of what `wi` leads into, relative to the outside; `None` if that is one on both sides.
     /// Radiance is that much larger in there, for a reason of measure and not of light: a path takes the inverse along, and

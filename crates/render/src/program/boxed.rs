@@ -1,7 +1,10 @@
 //! Nodes behind vtables: what the interpreted renderer is made of.
 
 use crate::alpha::AlphaTest;
-use crate::bsdf::{AnyInterface, Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use crate::bsdf::ggx::Ggx;
+use crate::bsdf::{
+    AnyInterface, Bsdf, BsdfKind, BsdfSample, BsdfValue, Fresnel, Roughness, SchlickCurve,
+};
 use crate::camera::Camera;
 use crate::domain::Domain;
 use crate::light::{Background, LightKind, LightSample};
@@ -101,6 +104,13 @@ entered!(Bsdf {
     fn albedo(d, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F>;
     fn radiance_scale(d, surface: &Surface<D>, wi: Vec3<D::F>) -> Option<D::F>;
     const fn kind() -> BsdfKind;
+});
+entered!(Fresnel {
+    fn reflectance(d, surface: &Surface<D>, cos: D::F) -> Color<D::F>;
+    fn curve(d, surface: &Surface<D>, cos: D::F) -> SchlickCurve<D>;
+});
+entered!(Roughness {
+    fn microfacets(d, surface: &Surface<D>) -> Ggx<D::F>;
 });
 entered!(ColorSource {
     fn color(d, surface: &Surface<D>) -> Color<D::F>;

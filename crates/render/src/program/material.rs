@@ -1,9 +1,9 @@
 //! Material programs as boxed nodes, over any domain.
 
-use super::{EmissionNode, NormalNode, Program, SourceNode};
+use super::{EmissionNode, NormalNode, Program, SourceNode, TangentNode};
 use crate::bsdf::Bsdf;
 use crate::domain::Domain;
-use crate::material::{Material, Shading, decode_normal, front_only};
+use crate::material::{Material, Shading, decode_normal, decode_tangent, front_only};
 use crate::math::Vec3;
 use crate::surface::{Attributes, MAX_INPUTS, Surface};
 use crate::texture::{ColorSource, ScalarSource};
@@ -18,6 +18,7 @@ pub struct BoxedMaterial<'a, D: Domain> {
     attributes: Attributes,
     inputs: Vec<BoxedInput<'a, D>>,
     normal: Option<NormalNode>,
+    tangent: Option<TangentNode>,
     emission: Option<EmissionNode>,
     bsdf: Box<dyn Bsdf<D> + Send + Sync + 'a>,
 }
@@ -40,6 +41,7 @@ impl<'a, D: Domain + 'a> BoxedMaterial<'a, D> {
             attributes: program.attributes,
             inputs: inputs.collect(),
             normal: program.normal,
+            tangent: program.tangent,
             emission: program.emission,
             bsdf: program.bsdf.boxed(),
         }
@@ -72,6 +74,11 @@ impl<D: Domain> Material<D> for BoxedMaterial<'_, D> {
             let scale = normal.scale.scalar(d, surface);
             let local = decode_normal(d, normal.texel.color(d, surface), scale);
             *surface = surface.with_normal(d, local, wo);
+        }
+        if let Some(tangent) = self.tangent {
+            let turn = [tangent.cos, tangent.sin].map(|input| input.scalar(d, surface));
+            let local = decode_tangent(d, tangent.texel.color(d, surface), turn);
+            *surface = surface.with_tangent(d, local);
         }
         let emission = self.emission.map(|emission| {
             let radiance = emission.radiance.color(d, surface);

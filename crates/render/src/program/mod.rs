@@ -10,8 +10,8 @@ mod walk;
 pub use interpreted::Interpreted;
 pub use material::BoxedMaterial;
 pub use nodes::{
-    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, ImageNode, LightNode, Literal,
-    ScalarNode,
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, FresnelNode, ImageNode, LightNode,
+    Literal, RoughnessNode, ScalarNode,
 };
 pub use walk::{Leaf, Source};
 
@@ -57,6 +57,17 @@ pub struct NormalNode {
     pub scale: Input,
 }
 
+/// The direction along which a program's surface is brushed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TangentNode {
+    /// The texel: the direction in its red and green.
+    pub texel: Input,
+    /// Cosine of the angle by which it is turned.
+    pub cos: Input,
+    /// Sine of that angle.
+    pub sin: Input,
+}
+
 /// A material program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
@@ -66,6 +77,8 @@ pub struct Program {
     pub inputs: Vec<InputNode>,
     /// Replaces the shading normal before the BSDF is used.
     pub normal: Option<NormalNode>,
+    /// Replaces the tangent, after the normal.
+    pub tangent: Option<TangentNode>,
     /// Emitted light.
     pub emission: Option<EmissionNode>,
     /// Scattering.

@@ -7,7 +7,7 @@
 use super::boxed::{Boxing, Entered};
 use super::table::{form, nodes, value};
 use crate::alpha::AlphaTest;
-use crate::bsdf::{AnyInterface, Bsdf};
+use crate::bsdf::{AnyInterface, Bsdf, Fresnel, Roughness};
 use crate::camera::Camera;
 use crate::domain::Domain;
 use crate::light::LightKind;
@@ -21,13 +21,33 @@ nodes! {
     BsdfNode: Bsdf in bsdf {
         Black,
         Diffuse { albedo: Input },
-        Conductor { color: Input, roughness: Input },
-        CoatedDiffuse { albedo: Input, roughness: Input, reflectance: Input, grazing: Input },
+        DiffuseTransmission { color: Input },
+        Glossy { fresnel: FresnelNode, roughness: RoughnessNode },
+        Sheen { color: Input, roughness: Input },
+        Coated { coat: Box<BsdfNode>, base: Box<BsdfNode> },
         Dielectric { transmittance: Input, ior: Input, interface: AnyInterface },
+        RoughDielectric {
+            transmittance: Input,
+            ior: Input,
+            roughness: RoughnessNode,
+            interface: AnyInterface,
+        },
         Phong { color: Input, exponent: Input },
         Mirror { reflectance: Input },
         Mix { a: Box<BsdfNode>, b: Box<BsdfNode>, weight: Input },
         Sum { a: Box<BsdfNode>, b: Box<BsdfNode>, probability: Input },
+    }
+
+    /// How much facets reflect.
+    FresnelNode: Fresnel in bsdf {
+        Schlick { normal: Input, grazing: Input },
+        ThinFilm { normal: Input, grazing: Input, strength: Input, ior: Input, thickness: Input },
+    }
+
+    /// How facets are turned.
+    RoughnessNode: Roughness in bsdf {
+        Isotropic { roughness: Input },
+        Anisotropic { roughness: Input, anisotropy: Input },
     }
 
     /// A source of colours.
@@ -49,6 +69,7 @@ nodes! {
         Image = image: ImageNode,
         Product(a: Box<ScalarNode>, b: Box<ScalarNode>),
         AtLeast(a: Box<ScalarNode>, b: Box<ScalarNode>),
+        Between { low: Box<ScalarNode>, high: Box<ScalarNode>, at: Box<ScalarNode> },
     }
 
     /// A kind of light.
@@ -112,6 +133,10 @@ pub enum Field<'a> {
     Input(Input),
     /// A BSDF within.
     Bsdf(&'a BsdfNode),
+    /// How much its facets reflect.
+    Fresnel(&'a FresnelNode),
+    /// How its facets are turned.
+    Roughness(&'a RoughnessNode),
     /// A source of colours within.
     ColorSource(&'a ColorNode),
     /// A source of numbers within.
@@ -149,6 +174,8 @@ macro_rules! fields {
 fields! {
     Input => Input(*),
     BsdfNode => Bsdf,
+    FresnelNode => Fresnel,
+    RoughnessNode => Roughness,
     ColorNode => ColorSource,
     ScalarNode => ScalarSource,
     ImageNode => Image,

@@ -62,7 +62,12 @@ fn leaves(literal: Literal<'_>) -> Vec<Leaf<'_>> {
         Field::Offset(_) => vec![Leaf::Parameter],
         Field::Image(image) => vec![Leaf::Image(image)],
         Field::Coordinates(uv) => vec![Leaf::Coordinates(uv)],
-        Field::Input(_) | Field::Bsdf(_) | Field::Interface(_) | Field::Attributes(_) => Vec::new(),
+        Field::Input(_)
+        | Field::Bsdf(_)
+        | Field::Fresnel(_)
+        | Field::Roughness(_)
+        | Field::Interface(_)
+        | Field::Attributes(_) => Vec::new(),
     });
     leaves.flatten().collect()
 }
@@ -127,7 +132,12 @@ impl BsdfNode {
 
     /// Whether some light passes through the surface.
     pub fn transmits(&self) -> bool {
-        matches!(self, Self::Dielectric { .. }) || self.children().any(Self::transmits)
+        matches!(
+            self,
+            Self::Dielectric { .. }
+                | Self::RoughDielectric { .. }
+                | Self::DiffuseTransmission { .. }
+        ) || self.children().any(Self::transmits)
     }
 }
 

@@ -19,7 +19,7 @@ use crate::domain::Domain;
 use crate::math::{Frame, Vec3};
 
 /// The most inputs that boxed programs keep per surface point.
-pub const MAX_INPUTS: usize = 16;
+pub const MAX_INPUTS: usize = 32;
 
 /// A point of a surface and the way it was reached.
 #[derive(Clone, Copy, Debug)]
@@ -164,6 +164,13 @@ impl<D: Domain> Surface<D> {
     #[inline(always)]
     pub fn with_normal(mut self, d: D, local: Vec3<D::F>, wo: Vec3<D::F>) -> Self {
         self.frame = shading_frame::with_normal(d, &self.frame, local, wo);
+        self
+    }
+
+    /// Turns the tangent to a direction given along tangent and bitangent.
+    #[inline(always)]
+    pub fn with_tangent(mut self, d: D, local: [D::F; 2]) -> Self {
+        self.frame = shading_frame::turned(d, &self.frame, local);
         self
     }
 

@@ -52,3 +52,18 @@ pub(super) fn with_normal<D: Domain>(
         normal,
     }
 }
+
+/// The frame turned about its normal, until its tangent points along (x, y) of what it was; as it is where that vanishes.
+#[inline(always)]
+pub(super) fn turned<D: Domain>(d: D, frame: &Frame<D::F>, [x, y]: [D::F; 2]) -> Frame<D::F> {
+    let length = d.sqrt(d.fma(x, x, y * y));
+    let usable = d.lt(d.lit(1e-6), length);
+    let inverse = d.lit(1.0) / d.select(usable, length, d.lit(1.0));
+    let cos = d.select(usable, x * inverse, d.lit(1.0));
+    let sin = d.select(usable, y * inverse, d.lit(0.0));
+    Frame {
+        tangent: frame.tangent.scale(cos) + frame.bitangent.scale(sin),
+        bitangent: frame.bitangent.scale(cos) - frame.tangent.scale(sin),
+        normal: frame.normal,
+    }
+}

@@ -115,6 +115,32 @@ impl<D: Domain, A: ScalarSource<D>, B: ScalarSource<D>> ScalarSource<D> for AtLe
     }
 }
 
+/// low + (high − low)·at.
+#[derive(Clone, Copy, Debug)]
+pub struct Between<L, H, A> {
+    /// The number where `at` is 0.
+    pub low: L,
+    /// The number where `at` is 1.
+    pub high: H,
+    /// Where between the two, in [0, 1].
+    pub at: A,
+}
+
+impl<D, L, H, A> ScalarSource<D> for Between<L, H, A>
+where
+    D: Domain,
+    L: ScalarSource<D>,
+    H: ScalarSource<D>,
+    A: ScalarSource<D>,
+{
+    #[inline(always)]
+    fn scalar(&self, d: D, surface: &Surface<D>) -> D::F {
+        let low = self.low.scalar(d, surface);
+        let range = self.high.scalar(d, surface) - low;
+        d.fma(range, self.at.scalar(d, surface), low)
+    }
+}
+
 /// A number as a grey colour.
 #[derive(Clone, Copy, Debug)]
 pub struct Gray<S>(pub S);

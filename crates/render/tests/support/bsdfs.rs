@@ -1,6 +1,6 @@
 //! White BSDFs, and directions to see them from.
 
-use residual_render::bsdf::{CoatedDiffuse, Conductor, Phong};
+use residual_render::bsdf::{Coated, Diffuse, Glossy, Isotropic, Phong, Schlick};
 use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
 use residual_render::texture::Const;
@@ -9,23 +9,45 @@ pub(crate) type White = Const<[f32; 3]>;
 
 pub(crate) const WHITE: White = Const([1.0; 3]);
 
-pub(crate) fn coated(
-    roughness: f32,
-    reflectance: f32,
-) -> CoatedDiffuse<White, Const<f32>, White, Const<f32>> {
-    CoatedDiffuse {
-        albedo: WHITE,
-        roughness: Const(roughness),
-        reflectance: Const([reflectance; 3]),
-        grazing: Const(1.0),
+/// Reflection by facets that are turned the same in all directions.
+pub(crate) type Facets = Glossy<Schlick<Const<[f32; 3]>, Const<f32>>, Isotropic<Const<f32>>>;
+
+/// A matte surface under a coat.
+pub(crate) type Plastic = Coated<Facets, Diffuse<Const<[f32; 3]>>>;
+
+pub(crate) fn facets(normal: [f32; 3], grazing: f32, roughness: f32) -> Facets {
+    Glossy {
+        fresnel: Schlick {
+            normal: Const(normal),
+            grazing: Const(grazing),
+        },
+        roughness: Isotropic {
+            roughness: Const(roughness),
+        },
     }
 }
 
-pub(crate) fn conductor(roughness: f32) -> Conductor<White, Const<f32>> {
-    Conductor {
-        color: WHITE,
-        roughness: Const(roughness),
+/// A metal.
+pub(crate) fn metal(color: [f32; 3], roughness: f32) -> Facets {
+    facets(color, 1.0, roughness)
+}
+
+/// A matte surface under a coat.
+pub(crate) fn plastic(albedo: [f32; 3], roughness: f32, coat: [f32; 2]) -> Plastic {
+    Coated {
+        coat: facets([coat[0]; 3], coat[1], roughness),
+        base: Diffuse {
+            albedo: Const(albedo),
+        },
     }
+}
+
+pub(crate) fn coated(roughness: f32, reflectance: f32) -> Plastic {
+    plastic([1.0; 3], roughness, [reflectance, 1.0])
+}
+
+pub(crate) fn conductor(roughness: f32) -> Facets {
+    metal([1.0; 3], roughness)
 }
 
 pub(crate) fn phong(exponent: f32) -> Phong<White, Const<f32>> {

@@ -7,8 +7,8 @@ use residual_render::domain::{Buffer, Domain};
 use residual_render::material::Material;
 use residual_render::math::vec3::vec3;
 use residual_render::program::{
-    AlphaTestNode, BoxedMaterial, BsdfNode, ColorNode, EmissionNode, ImageNode, NormalNode,
-    Program, ScalarNode,
+    AlphaTestNode, BoxedMaterial, BsdfNode, ColorNode, EmissionNode, FresnelNode, ImageNode,
+    NormalNode, Program, RoughnessNode, ScalarNode,
 };
 use residual_render::surface::{Attributes, Surface, SurfaceHit};
 use residual_render::texture::Input;
@@ -109,9 +109,14 @@ fn normal_maps_emission_and_vertex_attributes() {
     };
     for double_sided in [false, true] {
         let mut program = program(
-            BsdfNode::Conductor {
-                color: Input(0),
-                roughness: Input(2),
+            BsdfNode::Glossy {
+                fresnel: FresnelNode::Schlick {
+                    normal: Input(0),
+                    grazing: Input(3),
+                },
+                roughness: RoughnessNode::Isotropic {
+                    roughness: Input(2),
+                },
             },
             inputs(false),
         );

@@ -3,8 +3,8 @@
 use residual_render::bsdf::AnyInterface;
 use residual_render::layer::Layers;
 use residual_render::program::{
-    BsdfNode, CameraNode, ColorNode, ImageNode, InputNode, LightNode, Program, ScalarNode,
-    SourceNode, Structure,
+    BsdfNode, CameraNode, ColorNode, FresnelNode, ImageNode, InputNode, LightNode, Program,
+    RoughnessNode, ScalarNode, SourceNode, Structure,
 };
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
@@ -44,6 +44,7 @@ pub(crate) fn program(bsdf: BsdfNode, inputs: Vec<InputNode>) -> Program {
         attributes: Attributes::default(),
         inputs,
         normal: None,
+        tangent: None,
         emission: None,
         bsdf,
         alpha_test: None,
@@ -73,15 +74,43 @@ pub(crate) fn inputs(constant: bool) -> Vec<InputNode> {
 pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     let [first, second, third, fourth, fifth] = [0, 1, 2, 3, 4].map(Input);
     let diffuse = BsdfNode::Diffuse { albedo: first };
-    let conductor = BsdfNode::Conductor {
+    let isotropic = RoughnessNode::Isotropic { roughness: third };
+    let schlick = FresnelNode::Schlick {
+        normal: second,
+        grazing: fourth,
+    };
+    let conductor = BsdfNode::Glossy {
+        fresnel: schlick.clone(),
+        roughness: isotropic.clone(),
+    };
+    let brushed = BsdfNode::Glossy {
+        fresnel: FresnelNode::ThinFilm {
+            normal: second,
+            grazing: fourth,
+            strength: third,
+            ior: fourth,
+            thickness: third,
+        },
+        roughness: RoughnessNode::Anisotropic {
+            roughness: third,
+            anisotropy: fourth,
+        },
+    };
+    let coat = |coat: &BsdfNode, base: &BsdfNode| BsdfNode::Coated {
+        coat: Box::new(coat.clone()),
+        base: Box::new(base.clone()),
+    };
+    let coated = coat(&conductor, &diffuse);
+    let sheen = BsdfNode::Sheen {
         color: second,
         roughness: third,
     };
-    let coated = BsdfNode::CoatedDiffuse {
-        albedo: first,
-        roughness: third,
-        reflectance: second,
-        grazing: fourth,
+    let paper = BsdfNode::DiffuseTransmission { color: second };
+    let frosted = |interface| BsdfNode::RoughDielectric {
+        transmittance: first,
+        ior: fourth,
+        roughness: isotropic.clone(),
+        interface,
     };
     let glass = |interface| BsdfNode::Dielectric {
         transmittance: first,
@@ -114,6 +143,13 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         glass(AnyInterface::Thin),
         phong.clone(),
         mirror.clone(),
+        brushed,
+        sheen.clone(),
+        paper.clone(),
+        coat(&sheen, &coated),
+        coat(&conductor, &mix(&diffuse, &paper)),
+        frosted(AnyInterface::Solid),
+        frosted(AnyInterface::Thin),
         sum(&diffuse, &mirror),
         mix(&coated, &conductor),
         mix(&coated, &glass(AnyInterface::Thin)),

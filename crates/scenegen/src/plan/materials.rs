@@ -14,14 +14,13 @@ use super::planned::MaterialUse;
 use super::planned_materials::{Materials, PlannedMaterial};
 use super::program::Builder;
 use super::sources::Sources;
-use crate::desc::{SceneDesc, SurfaceDesc, Warning};
+use crate::desc::{SceneDesc, SurfaceDesc};
 
 /// Plans the materials of all instanced meshes that are seen.
 pub(super) fn plan_materials(
     scene: &SceneDesc,
     options: &PlanOptions,
     images: &mut Images,
-    warnings: &mut Vec<Warning>,
 ) -> Materials {
     let mut materials = Materials {
         planned: vec![None; scene.materials.len()],
@@ -37,8 +36,6 @@ pub(super) fn plan_materials(
         let mut builder = Builder {
             sources,
             inputs: Vec::new(),
-            warnings,
-            name: &desc.name,
             encloses,
         };
         let opacity = builder.opacity(desc);

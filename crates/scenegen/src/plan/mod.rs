@@ -17,6 +17,7 @@ mod geometry;
 mod images;
 mod lights;
 mod materials;
+mod metallic_roughness;
 mod opacity;
 mod options;
 mod planned;
@@ -49,7 +50,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let mut data = SceneData::default();
     let mut images = images::Images::default();
 
-    let materials = materials::plan_materials(scene, options, &mut images, &mut warnings);
+    let materials = materials::plan_materials(scene, options, &mut images);
     let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
     let hidden = coincident::hide(&mut data);
     // Only paths need lights.

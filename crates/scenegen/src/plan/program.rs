@@ -8,16 +8,13 @@ use residual_render::texture::Input;
 
 use super::opacity::Opacity;
 use super::sources::Sources;
-use crate::desc::{MaterialDesc, NormalMap, SurfaceDesc, Warning};
+use crate::desc::{MaterialDesc, NormalMap, SurfaceDesc};
 use crate::effect::Effect;
 
 /// Builds the program of one material.
 pub(super) struct Builder<'a> {
     pub(super) sources: Sources<'a>,
     pub(super) inputs: Vec<InputNode>,
-    pub(super) warnings: &'a mut Vec<Warning>,
-    /// The material's name.
-    pub(super) name: &'a str,
     /// The material's surfaces are closed.
     pub(super) encloses: bool,
 }
@@ -32,13 +29,18 @@ impl Builder<'_> {
     ) -> Program {
         let normal_map = desc.normal_map.as_ref().filter(|_| available.tangents);
         let normal = normal_map.and_then(|map| self.normal(map));
+        let is_anisotropic = self.is_anisotropic(&desc.surface);
+        let tangent = match is_anisotropic {
+            true => self.tangent(&desc.surface),
+            false => None,
+        };
         let bsdf = self.bsdf(&desc.surface);
         let emission = self.emission(desc);
         let inputs = std::mem::take(&mut self.inputs);
         let read = inputs.iter().map(|input| self.sources.read(&input.source));
         let mut attributes = read.fold(Attributes::NONE, Attributes::union);
         attributes.normals |= available.normals;
-        attributes.tangents |= normal.is_some();
+        attributes.tangents |= normal.is_some() || is_anisotropic;
         let alpha_test = match opacity {
             Opacity::Opaque | Opacity::Transparent => None,
             Opacity::Tested => self.alpha_test(desc),
@@ -47,6 +49,7 @@ impl Builder<'_> {
             attributes,
             inputs,
             normal,
+            tangent,
             emission,
             bsdf,
             alpha_test,

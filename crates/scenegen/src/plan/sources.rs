@@ -70,6 +70,11 @@ impl<'a> Sources<'a> {
         source.attributes().intersection(self.available)
     }
 
+    /// Whether meshes have tangents.
+    pub(super) fn has_tangents(&self) -> bool {
+        self.available.tangents
+    }
+
     /// Notes that something of the material changes nothing.
     pub(super) fn dismiss(&mut self, effect: Effect, reason: impl Into<String>) {
         let dismissed = Dismissed {
@@ -245,6 +250,25 @@ impl<'a> Sources<'a> {
         let factor = self.number(input.factor);
         let texel = self.channel(texture, *channel);
         self.scalar_product(factor, texel)
+    }
+
+    /// A number between `low`, where the texture of an input is 0, and its factor, where the texture is 1 or not there.
+    pub(super) fn between(&mut self, low: f32, high: &ScalarInput) -> ScalarNode {
+        let texture = ScalarInput {
+            factor: 1.0,
+            texture: high.texture.clone(),
+        };
+        match (self.known(&texture), &high.texture) {
+            (None, Some((texture, channel))) => {
+                let [low, high] = [low, high.factor].map(|value| Box::new(self.number(value)));
+                let at = Box::new(self.channel(texture, *channel));
+                ScalarNode::Between { low, high, at }
+            }
+            (known, _) => {
+                let at = known.unwrap_or(1.0);
+                self.number(low + (high.factor - low) * at)
+            }
+        }
     }
 
     /// The value of a scalar input that has the same everywhere.

@@ -6,7 +6,9 @@ mod structures;
 use residual_render::domain::Domain;
 use residual_render::domain::tape::{Outputs, Record, Tape};
 use residual_render::layer::{Layer, Layers};
-use residual_render::program::{BsdfNode, CameraNode, ColorNode, LightNode, ScalarNode, Structure};
+use residual_render::program::{
+    BsdfNode, CameraNode, ColorNode, FresnelNode, LightNode, RoughnessNode, ScalarNode, Structure,
+};
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
@@ -47,9 +49,14 @@ fn every_bsdf_with_constants() {
 #[test]
 fn every_image() {
     for image in images() {
-        let mut program = program(BsdfNode::Conductor {
-            color: Input(0),
-            roughness: Input(2),
+        let mut program = program(BsdfNode::Glossy {
+            fresnel: FresnelNode::Schlick {
+                normal: Input(0),
+                grazing: Input(3),
+            },
+            roughness: RoughnessNode::Isotropic {
+                roughness: Input(2),
+            },
         });
         program.attributes = Attributes {
             uv0: true,

@@ -3,8 +3,8 @@
 use residual_render::bsdf::AnyInterface;
 use residual_render::layer::Layers;
 use residual_render::program::{
-    AlphaTestNode, BsdfNode, CameraNode, ColorNode, EmissionNode, ImageNode, InputNode, LightNode,
-    NormalNode, Program, ScalarNode, SourceNode, Structure,
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, EmissionNode, FresnelNode, ImageNode,
+    InputNode, LightNode, NormalNode, Program, RoughnessNode, ScalarNode, SourceNode, Structure,
 };
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
@@ -35,6 +35,7 @@ pub(crate) fn program(bsdf: BsdfNode) -> Program {
             scalar("fourth", ScalarNode::Param(7)),
         ],
         normal: None,
+        tangent: None,
         emission: None,
         bsdf,
         alpha_test: None,
@@ -55,15 +56,43 @@ pub(crate) fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Struc
 pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     let [first, second, third, fourth] = [0, 1, 2, 3].map(Input);
     let diffuse = BsdfNode::Diffuse { albedo: first };
-    let conductor = BsdfNode::Conductor {
+    let isotropic = RoughnessNode::Isotropic { roughness: third };
+    let schlick = FresnelNode::Schlick {
+        normal: second,
+        grazing: fourth,
+    };
+    let conductor = BsdfNode::Glossy {
+        fresnel: schlick.clone(),
+        roughness: isotropic.clone(),
+    };
+    let brushed = BsdfNode::Glossy {
+        fresnel: FresnelNode::ThinFilm {
+            normal: second,
+            grazing: fourth,
+            strength: third,
+            ior: fourth,
+            thickness: third,
+        },
+        roughness: RoughnessNode::Anisotropic {
+            roughness: third,
+            anisotropy: fourth,
+        },
+    };
+    let coat = |coat: &BsdfNode, base: &BsdfNode| BsdfNode::Coated {
+        coat: Box::new(coat.clone()),
+        base: Box::new(base.clone()),
+    };
+    let coated = coat(&conductor, &diffuse);
+    let sheen = BsdfNode::Sheen {
         color: second,
         roughness: third,
     };
-    let coated = BsdfNode::CoatedDiffuse {
-        albedo: first,
-        roughness: third,
-        reflectance: second,
-        grazing: fourth,
+    let paper = BsdfNode::DiffuseTransmission { color: second };
+    let frosted = |interface| BsdfNode::RoughDielectric {
+        transmittance: first,
+        ior: fourth,
+        roughness: isotropic.clone(),
+        interface,
     };
     let glass = |interface| BsdfNode::Dielectric {
         transmittance: first,
@@ -83,6 +112,11 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         diffuse.clone(),
         conductor.clone(),
         coated.clone(),
+        brushed,
+        coat(&sheen, &coated),
+        paper,
+        frosted(AnyInterface::Solid),
+        frosted(AnyInterface::Thin),
         glass(AnyInterface::Solid),
         glass(AnyInterface::Thin),
         phong.clone(),

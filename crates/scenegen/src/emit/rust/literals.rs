@@ -38,6 +38,8 @@ impl<'a> Literals<'a> {
         match *field {
             Field::Input(input) => Code::word(self.inputs[input.0].as_str()),
             Field::Bsdf(node) => self.value(&node.literal()),
+            Field::Fresnel(node) => self.value(&node.literal()),
+            Field::Roughness(node) => self.value(&node.literal()),
             Field::ColorSource(node) => self.value(&node.literal()),
             Field::ScalarSource(node) => self.value(&node.literal()),
             Field::Image(image) => Code::Word(self.images.name(image)),
@@ -69,6 +71,8 @@ impl<'a> Literals<'a> {
         match *field {
             Field::Input(_) => unreachable!("nodes with inputs are printed as values only"),
             Field::Bsdf(node) => Some(self.kind(&node.literal())),
+            Field::Fresnel(node) => Some(self.kind(&node.literal())),
+            Field::Roughness(node) => Some(self.kind(&node.literal())),
             Field::ColorSource(node) => Some(self.kind(&node.literal())),
             Field::ScalarSource(node) => Some(self.kind(&node.literal())),
             Field::Image(image) => Some(image_kind(image)),

@@ -95,6 +95,22 @@ fn implementation(out: &mut Module, program: &Program, images: &Images<'_>) -> f
             "            *surface = surface.with_normal(d, normal, wo);"
         )?;
     }
+    if let Some(tangent) = program.tangent {
+        let [texel, cos, sin] =
+            [tangent.texel, tangent.cos, tangent.sin].map(|input| &names[input.0]);
+        let arguments = [
+            Code::word("d"),
+            Code::word(format!("{texel}.0")),
+            Code::word(format!("[{cos}.0, {sin}.0]")),
+        ];
+        let tangent = Code::call(Name::of("material", "decode_tangent"), arguments);
+        let tangent = out.bind("tangent", &tangent, 12);
+        writeln!(out, "            {tangent}")?;
+        writeln!(
+            out,
+            "            *surface = surface.with_tangent(d, tangent);"
+        )?;
+    }
     let emission = match program.emission {
         None => Name::known("None"),
         Some(emission) => {

@@ -32,8 +32,13 @@ impl Support {
             | "EXT_texture_webp"
             | "KHR_draco_mesh_compression"
             | "KHR_lights_punctual"
+            | "KHR_materials_anisotropy"
+            | "KHR_materials_clearcoat"
+            | "KHR_materials_diffuse_transmission"
             | "KHR_materials_emissive_strength"
             | "KHR_materials_ior"
+            | "KHR_materials_iridescence"
+            | "KHR_materials_sheen"
             | "KHR_materials_specular"
             | "KHR_materials_pbrSpecularGlossiness"
             | "KHR_materials_transmission"
@@ -51,14 +56,7 @@ impl Support {
             | "KHR_animation_pointer"
             | "KHR_xmp"
             | "KHR_xmp_json_ld" => Self::WithoutEffect,
-            "KHR_materials_anisotropy" => Self::MaterialSwitch("anisotropyStrength"),
-            "KHR_materials_clearcoat" => Self::MaterialSwitch("clearcoatFactor"),
-            "KHR_materials_diffuse_transmission" => {
-                Self::MaterialSwitch("diffuseTransmissionFactor")
-            }
             "KHR_materials_dispersion" => Self::MaterialSwitch("dispersion"),
-            "KHR_materials_iridescence" => Self::MaterialSwitch("iridescenceFactor"),
-            "KHR_materials_sheen" => Self::MaterialSwitch("sheenColorFactor"),
             "MSFT_texture_dds" => Self::ReportedWhereUsed,
             _ => Self::Unknown,
         }
@@ -128,10 +126,9 @@ pub(super) fn warn_about_material(
     for (extension, content) in others {
         let is_effective = match Support::of(extension) {
             Support::MaterialSwitch(member) => content.get(member).is_some_and(is_not_zero),
-            Support::Imported
-            | Support::WithoutEffect
-            | Support::ReportedWhereUsed
-            | Support::Unknown => true,
+            // Whoever reads it says what it lacks.
+            Support::Imported => continue,
+            Support::WithoutEffect | Support::ReportedWhereUsed | Support::Unknown => true,
         };
         if !is_effective {
             let reason = format!("{extension} is there, and its factor is 0");

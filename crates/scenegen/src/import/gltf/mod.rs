@@ -3,7 +3,7 @@
 //! ```text
 //! file ─ glb, json_text, root, repair ─▶ Document ─ animation, nodes ─▶ PlacedNode ─┬─ meshes ─ primitives ─ accessors ─▶ RawMesh ─ deform, placements
 //!    (JSON, buffers; meshopt, draco)                             │   └─ skins
-//!                                                                ├─ materials ─ material ─ surface ─▶ MaterialDesc
+//!                                                                ├─ materials ─ material ─ surface, layers ─▶ MaterialDesc
 //!                                                                │   └─ textures ─ images ─▶ TextureDesc, ImageRequest
 //!                                                                └─ lights, cameras, instancing
 //! ```
@@ -15,12 +15,14 @@ mod deform;
 mod document;
 mod draco;
 mod elements;
+mod extension_members;
 mod extensions;
 mod external_files;
 mod glb;
 mod images;
 mod instancing;
 mod json_text;
+mod layers;
 mod lights;
 mod lookup;
 mod material;

@@ -5,6 +5,7 @@ use gltf::json::extensions::material::{
     Ior, Material as Extensions, PbrSpecularGlossiness, Volume,
 };
 
+use super::layers;
 use super::members::Members;
 use crate::desc::{ColorInput, MetallicRoughness, ScalarInput, SurfaceDesc};
 use crate::import::error::Fault;
@@ -43,23 +44,19 @@ pub(super) fn specular_glossiness(
     let specular_texture = members.texture("specularGlossinessTexture", texture)?;
     let roughness_texture =
         members.roughness_texture("specularGlossinessTexture", texture, glossiness)?;
-    let constant = |factor| ScalarInput {
-        factor,
-        texture: None,
-    };
     Ok(SurfaceDesc::MetallicRoughness(MetallicRoughness {
         base_color: diffuse,
-        metallic: constant(0.0),
+        metallic: ScalarInput::constant(0.0),
         roughness: match roughness_texture {
             Some(texture) => ScalarInput {
                 factor: 1.0,
                 texture: Some((texture, ROUGHNESS_CHANNEL)),
             },
-            None => constant(1.0 - glossiness),
+            None => ScalarInput::constant(1.0 - glossiness),
         },
         // Fresnel 1, so that the colour alone says what is reflected.
         ior: 0.0,
-        specular: constant(1.0),
+        specular: ScalarInput::constant(1.0),
         specular_color: ColorInput {
             factor: members.color(
                 "specularFactor",
@@ -69,8 +66,7 @@ pub(super) fn specular_glossiness(
             ),
             texture: specular_texture,
         },
-        transmission: constant(0.0),
-        solid: false,
+        ..MetallicRoughness::default()
     }))
 }
 
@@ -106,7 +102,7 @@ fn metallic_roughness(
         0.0..=1.0,
         0.0,
     );
-    Ok(MetallicRoughness {
+    let surface = MetallicRoughness {
         base_color,
         metallic: ScalarInput {
             factor: metallic,
@@ -135,7 +131,9 @@ fn metallic_roughness(
             texture: transmission_texture.map(|texture| (texture, 0)),
         },
         solid: is_solid(members, extensions.volume.as_ref(), transmission_factor),
-    })
+        ..MetallicRoughness::default()
+    };
+    layers::read(surface, &extensions.others, members)
 }
 
 /// KHR_materials_volume: whether the surface bounds a solid.

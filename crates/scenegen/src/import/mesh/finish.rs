@@ -51,10 +51,9 @@ pub(in crate::import) fn finish(
             None
         }
     };
-    if let Some(normal_map) = &material.normal_map {
+    if let Some(uv_set) = material.tangent_uv_set() {
         // In the worst case every corner becomes a vertex of its own.
         budget.charge(corner_count, VERTEX_BYTES_WITH_TANGENT, place)?;
-        let uv_set = normal_map.texture.uv_set;
         tangents::complete(&mut mesh, given_tangents, uv_set, place, warnings);
     }
     Ok(Some(mesh))

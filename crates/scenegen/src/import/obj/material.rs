@@ -133,25 +133,12 @@ fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> Su
 /// `Pr` and `Pm`, the extension for physically based materials, are the roughness and metalness of glTF; `Ks` and `Ns`
 /// are there for programs that do not know them.
 fn metallic_roughness(inputs: &mut Inputs<'_, '_>, base_color: ColorInput) -> SurfaceDesc {
-    inputs
-        .statements
-        .dismiss(&["ks", "map_ks", "ns", "map_ns", "pcr"]);
-    for (key, what) in [
-        ("ps", "sheen"),
-        ("pc", "a clear coat"),
-        ("aniso", "anisotropy"),
-        ("anisor", "anisotropy"),
-    ] {
-        if inputs
-            .statements
-            .number(key)
-            .is_some_and(|value| value != 0.0)
-        {
-            inputs
-                .statements
-                .warn(format!("{key}: {what} is not rendered"));
-        }
+    inputs.statements.dismiss(&["ks", "map_ks", "ns", "map_ns"]);
+    let sheen = inputs.statements.number("ps").unwrap_or_default();
+    if sheen != 0.0 {
+        inputs.statements.warn("ps: sheen is not rendered");
     }
+    let rotation = inputs.statements.number("anisor").unwrap_or_default();
     // 1 is written for every material.
     let ior = match ior(inputs) {
         ior if ior > 1.0 => ior,
@@ -162,10 +149,12 @@ fn metallic_roughness(inputs: &mut Inputs<'_, '_>, base_color: ColorInput) -> Su
         metallic: inputs.fraction_input("pm", "map_pm", 0.0),
         roughness: inputs.fraction_input("pr", "map_pr", 0.5),
         ior,
-        specular: constant(1.0),
-        specular_color: uniform(1.0),
-        transmission: constant(0.0),
-        solid: false,
+        anisotropy: inputs.fraction_input("aniso", "map_aniso", 0.0),
+        // In turns.
+        anisotropy_rotation: rotation * std::f32::consts::TAU,
+        clearcoat: inputs.fraction_input("pc", "map_pc", 0.0),
+        clearcoat_roughness: inputs.fraction_input("pcr", "map_pcr", 0.0),
+        ..MetallicRoughness::default()
     })
 }
 

@@ -1,24 +1,22 @@
-//! The GGX microfacet distribution with height-correlated Smith masking, and metals made of it.
+//! The GGX microfacet distribution with height-correlated Smith masking, as wide along the tangent as across it or not.
 //!
 //! D is evaluated from the half vector's components, never from 1 − cos²θ, which cancels (hard case M-01).
 //! Visible normals are sampled by spherical caps (Dupuy and Benyoub 2023).
 
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::Domain;
+use crate::math::Vec3;
 use crate::math::elementary::sincos_turns;
 use crate::math::vec3::vec3;
 use crate::math::warp::FRAC_1_PI;
-use crate::math::{Color, Vec3};
-use crate::surface::Surface;
-use crate::texture::{ColorSource, ScalarSource};
 
 /// The smallest α: roughness below 0.01 is rendered as 0.01.
 pub const MIN_ALPHA: f64 = 1e-4;
 
-/// A GGX distribution of unit half-angle slope α.
+/// A GGX distribution.
 #[derive(Clone, Copy, Debug)]
 pub struct Ggx<F> {
-    alpha: F,
+    /// The slope α along the tangent and along the bitangent, at least [`MIN_ALPHA`].
+    alpha: [F; 2],
 }
 
 impl<F: crate::domain::Real> Ggx<F> {
@@ -26,23 +24,41 @@ impl<F: crate::domain::Real> Ggx<F> {
     #[inline(always)]
     pub fn from_roughness<D: Domain<F = F>>(d: D, roughness: F) -> Self {
         Self {
-            alpha: d.max(roughness * roughness, d.lit(MIN_ALPHA)),
+            alpha: [d.max(roughness * roughness, d.lit(MIN_ALPHA)); 2],
         }
+    }
+
+    /// As from roughness, and stretched along the tangent by `anisotropy` in [0, 1]: there α goes to 1
+    /// (KHR_materials_anisotropy).
+    #[inline(always)]
+    pub fn anisotropic<D: Domain<F = F>>(d: D, roughness: F, anisotropy: F) -> Self {
+        let across = roughness * roughness;
+        let along = d.fma(anisotropy * anisotropy, d.lit(1.0) - across, across);
+        Self {
+            alpha: [along, across].map(|alpha| d.max(alpha, d.lit(MIN_ALPHA))),
+        }
+    }
+
+    /// α of an isotropic distribution that reflects about as much.
+    #[inline(always)]
+    pub fn mean_alpha<D: Domain<F = F>>(&self, d: D) -> F {
+        d.sqrt(self.alpha[0] * self.alpha[1])
     }
 
     /// Density of microfacet normals, per steradian, projected area normalised to 1.
     #[inline(always)]
     pub fn distribution<D: Domain<F = F>>(&self, d: D, h: Vec3<F>) -> F {
-        let alpha2 = self.alpha * self.alpha;
-        let t = d.fma(h.z, h.z, d.fma(h.x, h.x, h.y * h.y) / alpha2);
-        d.lit(FRAC_1_PI) / (alpha2 * t * t)
+        let (x, y) = (h.x / self.alpha[0], h.y / self.alpha[1]);
+        let t = d.fma(h.z, h.z, d.fma(x, x, y * y));
+        d.lit(FRAC_1_PI) / (self.alpha[0] * self.alpha[1] * t * t)
     }
 
     /// Smith's Λ.
     #[inline(always)]
     pub fn lambda<D: Domain<F = F>>(&self, d: D, w: Vec3<F>) -> F {
-        let tan2 = d.fma(w.x, w.x, w.y * w.y) / d.max(w.z * w.z, d.lit(1e-30));
-        let x = self.alpha * self.alpha * tan2;
+        let (x, y) = (w.x * self.alpha[0], w.y * self.alpha[1]);
+        // α²·tan² of the angle with the normal.
+        let x = d.fma(x, x, y * y) / d.max(w.z * w.z, d.lit(1e-30));
         // (√(1 + x) − 1)/2 without cancellation.
         d.lit(0.5) * x / (d.sqrt(d.lit(1.0) + x) + d.lit(1.0))
     }
@@ -51,7 +67,7 @@ impl<F: crate::domain::Real> Ggx<F> {
     #[inline(always)]
     pub fn sample_visible_normal<D: Domain<F = F>>(&self, d: D, wo: Vec3<F>, u: [F; 2]) -> Vec3<F> {
         let one = d.lit(1.0);
-        let stretched = vec3(wo.x * self.alpha, wo.y * self.alpha, wo.z).normalize(d);
+        let stretched = vec3(wo.x * self.alpha[0], wo.y * self.alpha[1], wo.z).normalize(d);
         let (sin, cos) = sincos_turns(d, u[0]);
         let z = d.fma(one - u[1], one + stretched.z, -stretched.z);
         let r = d.sqrt(d.max(one - z * z, d.lit(0.0)));
@@ -61,8 +77,8 @@ impl<F: crate::domain::Real> Ggx<F> {
             z + stretched.z,
         );
         vec3(
-            cap.x * self.alpha,
-            cap.y * self.alpha,
+            cap.x * self.alpha[0],
+            cap.y * self.alpha[1],
             d.max(cap.z, d.lit(1e-9)),
         )
         .normalize_any(d)
@@ -110,70 +126,4 @@ pub fn reflect<D: Domain>(d: D, v: Vec3<D::F>, h: Vec3<D::F>) -> Vec3<D::F> {
 #[inline(always)]
 pub fn half_cosine<D: Domain>(d: D, sum: Vec3<D::F>, h: Vec3<D::F>) -> D::F {
     d.lit(0.5) * sum.dot(d, h)
-}
-
-/// (1 − cos)⁵, Schlick's weight.
-#[inline(always)]
-pub fn schlick_weight<D: Domain>(d: D, cos: D::F) -> D::F {
-    let m = d.max(d.lit(1.0) - cos, d.lit(0.0));
-    let m2 = m * m;
-    m2 * m2 * m
-}
-
-/// A metal: GGX reflection whose Fresnel factor goes from `color` to 1 (glTF 2.0, appendix B.3.5, conductor).
-#[derive(Clone, Copy, Debug)]
-pub struct Conductor<C, R> {
-    /// Reflectance at normal incidence.
-    pub color: C,
-    /// Perceptual roughness.
-    pub roughness: R,
-}
-
-#[inline(always)]
-fn conductor_fresnel<D: Domain>(d: D, color: Color<D::F>, cos: D::F) -> Color<D::F> {
-    color.lerp(Vec3::splat(d.lit(1.0)), schlick_weight(d, cos))
-}
-
-impl<D: Domain, C: ColorSource<D>, R: ScalarSource<D>> Bsdf<D> for Conductor<C, R> {
-    #[inline(always)]
-    fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D> {
-        let ggx = Ggx::from_roughness(d, self.roughness.scalar(d, surface));
-        let sum = wo + wi;
-        let h = sum.normalize_any(d);
-        let (value, pdf) = ggx.reflection(d, wo, wi, h);
-        let cos = half_cosine(d, sum, h);
-        let fresnel = conductor_fresnel(d, self.color.color(d, surface), cos);
-        BsdfValue {
-            value: fresnel.scale(value),
-            pdf,
-        }
-    }
-
-    #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
-        let ggx = Ggx::from_roughness(d, self.roughness.scalar(d, surface));
-        let h = ggx.sample_visible_normal(d, wo, [u[0], u[1]]);
-        let wi = reflect(d, wo, h);
-        let fresnel = conductor_fresnel(d, self.color.color(d, surface), d.abs(wo.dot(d, h)));
-        let (_, pdf) = ggx.reflection(d, wo, wi, h);
-        BsdfSample {
-            wi,
-            weight: fresnel.scale(ggx.sample_weight(d, wo, wi)),
-            pdf,
-            delta: d.truth(false),
-        }
-    }
-
-    #[inline(always)]
-    fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
-        conductor_fresnel(d, self.color.color(d, surface), wo.z)
-    }
-
-    #[inline(always)]
-    fn kind(&self) -> BsdfKind {
-        BsdfKind {
-            scatters: true,
-            delta: false,
-        }
-    }
 }

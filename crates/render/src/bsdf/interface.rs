@@ -1,0 +1,81 @@
+//! What lies behind a transmitting surface: a body, or nothing.
+
+use crate::domain::Domain;
+use crate::surface::Surface;
+
+/// What lies behind the surface.
+pub trait Interface {
+    /// Transmitted rays are refracted.
+    fn refracts(&self) -> bool;
+}
+
+/// A body: rays refract in and out of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Solid;
+impl Interface for Solid {
+    #[inline(always)]
+    fn refracts(&self) -> bool {
+        true
+    }
+}
+
+/// A sheet without thickness: what is transmitted goes straight on (KHR_materials_transmission without volume).
+#[derive(Clone, Copy, Debug)]
+pub struct Thin;
+impl Interface for Thin {
+    #[inline(always)]
+    fn refracts(&self) -> bool {
+        false
+    }
+}
+
+/// [`Interface`] chosen at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum AnyInterface {
+    /// [`Solid`].
+    Solid,
+    /// [`Thin`].
+    Thin,
+}
+impl Interface for AnyInterface {
+    #[inline(always)]
+    fn refracts(&self) -> bool {
+        match self {
+            Self::Solid => Solid.refracts(),
+            Self::Thin => Thin.refracts(),
+        }
+    }
+}
+
+/// Index of refraction of what lies beyond the surface relative to what lies before it, of a body of this index.
+#[inline(always)]
+pub(super) fn relative_ior<D: Domain>(
+    d: D,
+    surface: &Surface<D>,
+    interface: &impl Interface,
+    ior: D::F,
+) -> D::F {
+    // A sheet is entered from either side.
+    if interface.refracts() {
+        d.select(surface.front, ior, d.lit(1.0) / ior)
+    } else {
+        ior
+    }
+}
+
+/// The squared index of refraction of what `wi` leads into, relative to the outside: see
+/// [`Bsdf::radiance_scale`](super::Bsdf::radiance_scale).
+#[inline(always)]
+pub(super) fn radiance_scale<D: Domain>(
+    d: D,
+    surface: &Surface<D>,
+    interface: &impl Interface,
+    ior: D::F,
+    wi_z: D::F,
+) -> Option<D::F> {
+    interface.refracts().then(|| {
+        let (here, beyond) = (d.lt(d.lit(0.0), wi_z), d.lt(wi_z, d.lit(0.0)));
+        let inside = (surface.front & beyond) | (!surface.front & here);
+        d.select(inside, ior * ior, d.lit(1.0))
+    })
+}

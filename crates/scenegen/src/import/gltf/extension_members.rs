@@ -1,0 +1,108 @@
+//! Members of an extension that is left as JSON, each by its name.
+
+use std::ops::RangeInclusive;
+
+use gltf::json::deserialize;
+use gltf::json::texture::Info;
+use serde_json::{Map, Value};
+
+use super::members::Members;
+use crate::desc::{ColorInput, ScalarInput, TextureUse};
+use crate::import::error::Fault;
+
+/// The members of an extension of a material.
+pub(super) struct ExtensionMembers<'a> {
+    /// The extension's name.
+    name: &'static str,
+    content: &'a Map<String, Value>,
+}
+
+/// The values that a number may have, and what it is where the file says nothing.
+type Range = (RangeInclusive<f32>, f32);
+
+impl<'a> ExtensionMembers<'a> {
+    /// Those of an extension, if the material has it.
+    pub(super) fn of(extensions: &'a Map<String, Value>, name: &'static str) -> Option<Self> {
+        let content = extensions.get(name)?.as_object()?;
+        Some(Self { name, content })
+    }
+
+    /// Whether there is such a member.
+    pub(super) fn has(&self, member: &str) -> bool {
+        self.content.contains_key(member)
+    }
+
+    /// A number.
+    pub(super) fn number(
+        &self,
+        members: &mut Members<'_, '_>,
+        member: &str,
+        (range, default): Range,
+    ) -> f32 {
+        match self.content.get(member) {
+            None => default,
+            Some(value) => match value.as_f64() {
+                Some(value) => members.number(member, value as f32, range, default),
+                None => {
+                    members.warn(format!("{member} is no number; {default} is used"));
+                    default
+                }
+            },
+        }
+    }
+
+    /// A factor with a texture, of which one channel is read.
+    pub(super) fn scalar(
+        &self,
+        members: &mut Members<'_, '_>,
+        [factor, texture]: [&str; 2],
+        range: Range,
+        channel: usize,
+    ) -> Result<ScalarInput, Fault> {
+        let factor = self.number(members, factor, range);
+        let texture = self.texture(members, texture)?;
+        Ok(ScalarInput {
+            factor,
+            texture: texture.map(|texture| (texture, channel)),
+        })
+    }
+
+    /// A colour factor with a texture.
+    pub(super) fn color(
+        &self,
+        members: &mut Members<'_, '_>,
+        [factor, texture]: [&str; 2],
+        default: [f32; 3],
+    ) -> Result<ColorInput, Fault> {
+        let given = self.content.get(factor);
+        let numbers = given.and_then(|value| {
+            let [r, g, b] = value.as_array()?.as_slice() else {
+                return None;
+            };
+            Some([r.as_f64()?, g.as_f64()?, b.as_f64()?].map(|c| c as f32))
+        });
+        if given.is_some() && numbers.is_none() {
+            members.warn(format!("{factor} is no colour; {default:?} is used"));
+        }
+        let color = numbers.unwrap_or(default);
+        Ok(ColorInput {
+            factor: members.color(factor, color, 0.0..=1.0, default[0]),
+            texture: self.texture(members, texture)?,
+        })
+    }
+
+    fn texture(
+        &self,
+        members: &mut Members<'_, '_>,
+        member: &str,
+    ) -> Result<Option<TextureUse>, Fault> {
+        let Some(json) = self.content.get(member) else {
+            return Ok(None);
+        };
+        let info: Info = deserialize::from_value(json.clone()).map_err(|error| {
+            let place = format!("{}/extensions/{}/{member}", members.place, self.name);
+            Fault::new(place, error.to_string())
+        })?;
+        members.texture(member, Some(&info))
+    }
+}

@@ -1,0 +1,97 @@
+//! Layers and lobes of a material that extensions add, whose JSON the `gltf` crate leaves as it is.
+
+use serde_json::{Map, Value};
+
+use super::extension_members::ExtensionMembers;
+use super::members::Members;
+use crate::desc::{MetallicRoughness, ScalarInput};
+use crate::import::error::Fault;
+
+/// The surface with what these extensions say of it.
+pub(super) fn read(
+    mut surface: MetallicRoughness,
+    extensions: &Map<String, Value>,
+    members: &mut Members<'_, '_>,
+) -> Result<MetallicRoughness, Fault> {
+    let of = |name| ExtensionMembers::of(extensions, name);
+    if let Some(extension) = of("KHR_materials_diffuse_transmission") {
+        surface.diffuse_transmission = extension.scalar(
+            members,
+            ["diffuseTransmissionFactor", "diffuseTransmissionTexture"],
+            (0.0..=1.0, 0.0),
+            3,
+        )?;
+        surface.diffuse_transmission_color = extension.color(
+            members,
+            [
+                "diffuseTransmissionColorFactor",
+                "diffuseTransmissionColorTexture",
+            ],
+            [1.0; 3],
+        )?;
+    }
+    if let Some(extension) = of("KHR_materials_anisotropy") {
+        surface.anisotropy = extension.scalar(
+            members,
+            ["anisotropyStrength", "anisotropyTexture"],
+            (0.0..=1.0, 0.0),
+            2,
+        )?;
+        let angles = f32::MIN..=f32::MAX;
+        surface.anisotropy_rotation =
+            extension.number(members, "anisotropyRotation", (angles, 0.0));
+    }
+    if let Some(extension) = of("KHR_materials_iridescence") {
+        surface.iridescence = extension.scalar(
+            members,
+            ["iridescenceFactor", "iridescenceTexture"],
+            (0.0..=1.0, 0.0),
+            0,
+        )?;
+        surface.iridescence_ior =
+            extension.number(members, "iridescenceIor", (1.0..=f32::MAX, 1.3));
+        surface.iridescence_minimum = extension.number(
+            members,
+            "iridescenceThicknessMinimum",
+            (0.0..=f32::MAX, 100.0),
+        );
+        surface.iridescence_thickness = extension.scalar(
+            members,
+            ["iridescenceThicknessMaximum", "iridescenceThicknessTexture"],
+            (0.0..=f32::MAX, 400.0),
+            1,
+        )?;
+    }
+    if let Some(extension) = of("KHR_materials_sheen") {
+        surface.sheen_color =
+            extension.color(members, ["sheenColorFactor", "sheenColorTexture"], [0.0; 3])?;
+        surface.sheen_roughness = extension.scalar(
+            members,
+            ["sheenRoughnessFactor", "sheenRoughnessTexture"],
+            (0.0..=1.0, 0.0),
+            3,
+        )?;
+    }
+    if let Some(extension) = of("KHR_materials_clearcoat") {
+        surface.clearcoat = extension.scalar(
+            members,
+            ["clearcoatFactor", "clearcoatTexture"],
+            (0.0..=1.0, 0.0),
+            0,
+        )?;
+        surface.clearcoat_roughness = extension.scalar(
+            members,
+            ["clearcoatRoughnessFactor", "clearcoatRoughnessTexture"],
+            (0.0..=1.0, 0.0),
+            1,
+        )?;
+        if surface.clearcoat != ScalarInput::constant(0.0)
+            && extension.has("clearcoatNormalTexture")
+        {
+            members.warn(
+                "clearcoatNormalTexture is not rendered; the coat has the normals of the surface",
+            );
+        }
+    }
+    Ok(surface)
+}
