@@ -5,9 +5,9 @@
 use glam::{Vec2, Vec3, Vec4};
 use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{
-    AlphaMode, ColorInput, EnvironmentDesc, Filter, MaterialDesc, MeshDesc, MetallicRoughness,
-    NormalMap, PhongSurface, Projection, PunctualKind, ScalarInput, SceneDesc, SurfaceDesc,
-    TextureUse, Wrap,
+    AlphaMode, Attenuation, ColorInput, EnvironmentDesc, Filter, MaterialDesc, MeshDesc,
+    MetallicRoughness, NormalMap, PhongSurface, Projection, PunctualKind, ScalarInput, SceneDesc,
+    SurfaceDesc, TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
@@ -58,6 +58,12 @@ impl Tiny {
 
 /// Of all pictures: not a multiple of the lanes.
 pub const SIZE: [u32; 2] = [21, 15];
+
+/// Of bodies that absorb.
+const TINT: Attenuation = Attenuation {
+    color: [0.3, 0.7, 0.5],
+    distance: 0.4,
+};
 
 /// A corner of two sheets.
 fn corner() -> [MeshDesc; 2] {
@@ -251,6 +257,67 @@ fn surfaces() -> Vec<Tiny> {
             &[Effect::Refraction, Effect::SmoothNormals],
             &[],
             behind(surface("ball", glass(true)), ball()),
+        ),
+        Tiny::new(
+            "tinted_glass",
+            &[
+                Effect::Refraction,
+                Effect::Absorption,
+                Effect::SmoothNormals,
+            ],
+            &[],
+            behind(
+                surface(
+                    "bottle",
+                    MetallicRoughness {
+                        attenuation: Some(TINT),
+                        ..glass(true)
+                    },
+                ),
+                ball(),
+            ),
+        ),
+        Tiny::new(
+            "prism",
+            &[
+                Effect::Refraction,
+                Effect::Dispersion,
+                Effect::SmoothNormals,
+            ],
+            &[],
+            behind(
+                surface(
+                    "flint",
+                    MetallicRoughness {
+                        dispersion: 1.5,
+                        ..glass(true)
+                    },
+                ),
+                ball(),
+            ),
+        ),
+        Tiny::new(
+            "tinted_prism",
+            &[
+                Effect::Refraction,
+                Effect::RoughTransmission,
+                Effect::Absorption,
+                Effect::Dispersion,
+                Effect::SmoothNormals,
+            ],
+            &[],
+            behind(
+                surface(
+                    "frosted flint",
+                    MetallicRoughness {
+                        attenuation: Some(TINT),
+                        dispersion: 1.5,
+                        roughness: scalar(0.4),
+                        ..glass(true)
+                    },
+                ),
+                ball(),
+            ),
         ),
         Tiny::new(
             "frosted_glass",

@@ -18,7 +18,7 @@ use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
-use residual_render::tracer::TracerNode;
+use residual_render::tracer::{Between, TracerNode};
 use residual_render::triangle::TriangleRecord;
 
 type Triangle = [[f32; 3]; 3];
@@ -38,6 +38,7 @@ fn diffuse(albedo: f32, emission: f32) -> Program {
         inputs: vec![input("albedo", albedo), input("emission", emission)],
         normal: None,
         tangent: None,
+        interior: None,
         emission: (emission > 0.0).then_some(emits),
         bsdf: BsdfNode::Diffuse { albedo: Input(0) },
         alpha_test: None,
@@ -94,6 +95,7 @@ fn scene(
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),
+        between: Between::default(),
         layers: Layers::NONE,
     };
     (structure, data)

@@ -57,6 +57,9 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("Sheen {", &[Effect::Sheen]),
     ("RoughDielectric {", &[Effect::RoughTransmission]),
     ("DiffuseTransmission {", &[Effect::DiffuseTransmission]),
+    ("Absorbing", &[Effect::Absorption]),
+    ("Dispersing", &[Effect::Dispersion]),
+    ("Dispersive {", &[Effect::Dispersion]),
     ("Phong {", &[Effect::PhongReflection]),
     ("Mirror {", &[Effect::MirrorReflection]),
     ("Thin", &[Effect::ThinTransmission]),
@@ -110,6 +113,8 @@ const SOURCES: &[(&str, &[Effect])] = &[
             Effect::ThinTransmission,
         ],
     ),
+    ("render/src/tracer/absorbing.rs", &[Effect::Absorption]),
+    ("render/src/tracer/dispersing.rs", &[Effect::Dispersion]),
     ("render/src/light/area.rs", &[Effect::EmittingSurfaces]),
     (
         "render/src/light/punctual.rs",
@@ -155,6 +160,7 @@ const COMMON: &[&str] = &[
     "render/src/tracer/mod.rs",
     "render/src/tracer/mis.rs",
     "render/src/tracer/path.rs",
+    "render/src/tracer/path_state.rs",
     "render/src/tracer/settings.rs",
     "render/src/tracer/step.rs",
     "render/src/triangle.rs",
@@ -231,6 +237,7 @@ fn renderers_contain_what_scenes_call_for() {
         ("environment", &["light::environment"]),
         ("mixed_metal", &["bsdf::glossy", "bsdf::coated"]),
         ("solid_glass", &["bsdf::dielectric"]),
+        ("tinted_glass", &["tracer::absorbing"]),
     ] {
         let tiny = tiny::all().into_iter().find(|tiny| tiny.name == name);
         let library = check_instructions(&tiny.unwrap().plan(), name);
@@ -257,6 +264,8 @@ const NOT_IN_CORNELL: &[&str] = &[
     "bsdf::mirror",
     "bsdf::combine",
     "decode_normal",
+    "tracer::absorbing",
+    "tracer::dispersing",
     "bvh::instances",
 ];
 

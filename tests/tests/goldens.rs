@@ -64,6 +64,7 @@ goldens! {
     orthographic_camera
     paper
     phong
+    prism
     second_uv_set
     smooth_normals
     soap_film
@@ -74,6 +75,8 @@ goldens! {
     texture_transform
     textured_emission
     thin_glass
+    tinted_glass
+    tinted_prism
     velvet
     vertex_colors
 }

@@ -67,6 +67,7 @@ impl Kind {
             inputs: builder.inputs,
             normal: None,
             tangent: None,
+            interior: None,
             emission: None,
             bsdf,
             alpha_test: None,

@@ -21,7 +21,7 @@ use residual_render::layer::Layers;
 use residual_render::program::{CameraNode, LightNode, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
-use residual_render::tracer::{TracerNode, TracerOptions};
+use residual_render::tracer::{Between, TracerNode, TracerOptions};
 use residual_scenegen::plan::{Binding, LightKindUse, LightPicks, MaterialUse, Plan};
 use serde_json::{Value, json};
 
@@ -50,6 +50,7 @@ pub fn plan() -> Plan {
             name: format!("{kind}, {inputs}"),
             images: BTreeMap::new(),
             culled: false,
+            absorbs: false,
         }]
     };
     Plan {
@@ -62,6 +63,7 @@ pub fn plan() -> Plan {
             camera: CameraNode::Perspective,
             sampler: AnySampler::Sobol,
             tracer: TracerNode::default(),
+            between: Between::default(),
             layers: Layers::NONE,
         },
         data: stream::data(&params),

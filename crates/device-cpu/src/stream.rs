@@ -11,7 +11,7 @@ use residual_render::domain::{Buffers, Lanes, MAX_LANES};
 use residual_render::math::vec3::vec3;
 use residual_render::sampler::SampleKey;
 use residual_render::surface::{PathRay, SurfaceHit};
-use residual_render::tracer::{Path, Shadow};
+use residual_render::tracer::{Path, PathState, Shadow};
 use residual_render::triangle::program_in;
 
 use crate::ahead;
@@ -68,7 +68,7 @@ fn compact<D: Lanes>(bits: u32, mut len: usize, mut put: impl FnMut(usize, usize
 struct State {
     /// Throughput and density.
     weight: Row,
-    /// Sample key, the index of its sample among those of the job, and depth.
+    /// Sample key, the index of its sample among those of the job, and what it remembers.
     origin: Row,
 }
 
@@ -133,7 +133,7 @@ impl PathStream {
             [x.to_bits(), y.to_bits(), z.to_bits(), ray.tmax.to_bits()]
         });
         let [r, g, b, pdf] = d.columns(|lane| self.states[members[lane]].weight);
-        let [pixel, index, sample, depth] = d.columns(|lane| self.states[members[lane]].origin);
+        let [pixel, index, sample, state] = d.columns(|lane| self.states[members[lane]].origin);
         let path = Path {
             ray: PathRay {
                 org: vec3(real(ox), real(oy), real(oz)),
@@ -143,7 +143,7 @@ impl PathStream {
             throughput: vec3(real(r), real(g), real(b)),
             pdf: real(pdf),
             key: SampleKey { pixel, index },
-            depth,
+            state: PathState(state),
         };
         (path, sample)
     }
@@ -159,7 +159,7 @@ impl PathStream {
             d.to_bits(b),
             d.to_bits(path.pdf),
         ]);
-        let origins = d.rows([path.key.pixel, path.key.index, sample, path.depth]);
+        let origins = d.rows([path.key.pixel, path.key.index, sample, path.state.0]);
         self.len = compact::<D>(bits, self.len, |at, lane| {
             self.rays[at] = ray_of_rows(orgs[lane], dirs[lane]);
             self.states[at] = State {

@@ -243,6 +243,7 @@ fn with_unused(effect: Effect, plan: &Plan) -> Option<Plan> {
             inputs: Vec::new(),
             normal: None,
             tangent: None,
+            interior: None,
             emission: None,
             bsdf: BsdfNode::Black,
             alpha_test: Some(AlphaTestNode::AlphaBlend {

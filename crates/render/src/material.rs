@@ -1,7 +1,7 @@
 //! Materials: programs that turn a surface point into a BSDF and emitted light.
 
 use crate::bsdf::Bsdf;
-use crate::domain::Domain;
+use crate::domain::{Buffer, Domain};
 use crate::math::{Color, Vec3};
 use crate::surface::{Attributes, Surface};
 
@@ -19,6 +19,18 @@ pub trait Material<D: Domain> {
     /// The vertex attributes that are read.
     fn attributes(&self) -> Attributes;
 
+    /// Index of the medium behind the surface, if it is the surface of a body and the scene has media.
+    #[inline(always)]
+    fn interior(&self, _d: D, _surface: &Surface<D>) -> Option<D::U> {
+        None
+    }
+
+    /// Whether the surface bends wavelengths differently.
+    #[inline(always)]
+    fn disperses(&self) -> bool {
+        false
+    }
+
     /// Evaluates the inputs at a point, seen from the unit direction `wo`; may replace the shading normal.
     fn shade<'a>(
         &'a self,
@@ -28,6 +40,12 @@ pub trait Material<D: Domain> {
     ) -> Shading<D::F, impl Bsdf<D> + 'a>
     where
         D: 'a;
+}
+
+/// The index of a medium in a material's parameter block.
+#[inline(always)]
+pub fn medium<D: Domain>(d: D, surface: &Surface<D>, offset: u32) -> D::U {
+    d.load(Buffer::Params, surface.params + d.uint(offset))
 }
 
 /// Emission that leaves from the front only.

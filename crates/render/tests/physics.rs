@@ -15,6 +15,7 @@ mod lights;
 mod microfacet;
 mod sampler;
 mod spawn;
+mod spectrum;
 mod support;
 mod textures;
 mod vectors;

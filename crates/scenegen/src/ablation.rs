@@ -21,6 +21,8 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::Anisotropy => "as rough in all directions",
         Effect::Iridescence => "without a film",
         Effect::RoughTransmission => "smooth",
+        Effect::Absorption => "clear",
+        Effect::Dispersion => "all wavelengths bent alike",
         Effect::PhongReflection | Effect::MirrorReflection => "matte",
         Effect::ThinTransmission | Effect::Refraction | Effect::DiffuseTransmission => "opaque",
         Effect::Textures => "their mean values; alpha, normal maps and emission stay",
@@ -136,6 +138,10 @@ fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
         (Effect::RoughTransmission, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.roughness = number(0.0);
         }
+        (Effect::Absorption, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.attenuation = None;
+        }
+        (Effect::Dispersion, SurfaceDesc::MetallicRoughness(surface)) => surface.dispersion = 0.0,
         (Effect::DiffuseTransmission, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.diffuse_transmission = number(0.0);
         }

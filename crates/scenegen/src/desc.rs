@@ -259,6 +259,10 @@ pub struct MetallicRoughness {
     /// KHR_materials_volume with `thicknessFactor` > 0: transmitted rays refract into a solid.
     /// Without it the surface is thin: what is transmitted goes straight on.
     pub solid: bool,
+    /// KHR_materials_volume: what a solid absorbs, if anything.
+    pub attenuation: Option<Attenuation>,
+    /// KHR_materials_dispersion: 20 over the Abbe number; 0 bends all wavelengths alike.
+    pub dispersion: f32,
     /// KHR_materials_diffuse_transmission: the share of the diffuse light that passes (alpha channel).
     pub diffuse_transmission: ScalarInput,
     /// KHR_materials_diffuse_transmission: its colour.
@@ -286,6 +290,15 @@ pub struct MetallicRoughness {
     pub clearcoat_roughness: ScalarInput,
 }
 
+/// What a body absorbs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Attenuation {
+    /// What is left of white light after the distance, in (0, 1].
+    pub color: [f32; 3],
+    /// The distance in metres, positive.
+    pub distance: f32,
+}
+
 impl Default for MetallicRoughness {
     /// glTF's defaults: a white metal of roughness 1, without any layer.
     fn default() -> Self {
@@ -298,6 +311,8 @@ impl Default for MetallicRoughness {
             specular_color: ColorInput::constant([1.0; 3]),
             transmission: ScalarInput::constant(0.0),
             solid: false,
+            attenuation: None,
+            dispersion: 0.0,
             diffuse_transmission: ScalarInput::constant(0.0),
             diffuse_transmission_color: ColorInput::constant([1.0; 3]),
             anisotropy: ScalarInput::constant(0.0),

@@ -35,6 +35,8 @@ macro_rules! surface_inputs {
                 specular_color,
                 transmission,
                 solid: _,
+                attenuation: _,
+                dispersion: _,
                 diffuse_transmission,
                 diffuse_transmission_color,
                 anisotropy,

@@ -1,8 +1,8 @@
 //! The invariants of [`SceneDesc`], checked.
 
 use crate::desc::{
-    AlphaMode, CameraDesc, LightDesc, MaterialDesc, MeshDesc, Projection, PunctualKind, SceneDesc,
-    SurfaceDesc, Texels,
+    AlphaMode, Attenuation, CameraDesc, LightDesc, MaterialDesc, MeshDesc, Projection,
+    PunctualKind, SceneDesc, SurfaceDesc, Texels,
 };
 use crate::desc_inputs::MaterialInput;
 
@@ -117,6 +117,22 @@ impl SceneDesc {
                 let is_valid =
                     surface.ior.is_finite() && (surface.ior == 0.0 || surface.ior >= 1.0);
                 require(is_valid, || place("ior"), "is neither 0 nor at least 1")?;
+                let is_valid = surface
+                    .attenuation
+                    .is_none_or(|Attenuation { color, distance }| {
+                        let is_share = |c: &f32| *c > 0.0 && *c <= 1.0;
+                        color.iter().all(is_share) && distance > 0.0 && distance.is_finite()
+                    });
+                require(
+                    is_valid,
+                    || place("attenuation"),
+                    "has no colour in (0, 1] or no positive distance",
+                )?;
+                require(
+                    surface.dispersion.is_finite() && surface.dispersion >= 0.0,
+                    || place("dispersion"),
+                    "is not finite and non-negative",
+                )?;
                 require(
                     surface.anisotropy_rotation.is_finite(),
                     || place("anisotropy_rotation"),

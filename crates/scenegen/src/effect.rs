@@ -37,6 +37,8 @@ effects! {
     Refraction = "refraction",
     RoughTransmission = "rough transmission",
     DiffuseTransmission = "diffuse transmission",
+    Absorption = "absorption",
+    Dispersion = "dispersion",
     MixedLobes = "mixed lobes",
     Textures = "textures",
     NearestFilter = "nearest filter",

@@ -86,6 +86,12 @@ impl Effects {
         if who.material.culled {
             self.add(Effect::BackFaceCulling, place);
         }
+        if who.material.absorbs {
+            self.add(Effect::Absorption, place);
+        }
+        if program.disperses() {
+            self.add(Effect::Dispersion, place);
+        }
         if let Some(emission) = program.emission {
             self.add(Effect::EmittingSurfaces, place);
             if has_image(&program.inputs[emission.radiance.0].source) {

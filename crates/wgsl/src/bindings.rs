@@ -38,7 +38,8 @@ impl Binding {
             | Buffer::LightAlias
             | Buffer::Environment
             | Buffer::Camera
-            | Buffer::Objects => Self::Tables,
+            | Buffer::Objects
+            | Buffer::Media => Self::Tables,
         }
     }
 

@@ -18,7 +18,7 @@ pub(crate) const QUEUED: WayOn = WayOn {
     ],
     bounce: &[
         "next = atomicAdd(&next_count, 1u);",
-        "paths[slot] = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, path.depth + 1u, vec4u(0u));",
+        "paths[slot] = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, step.bounce_state, vec4u(0u));",
     ],
 };
 
@@ -37,7 +37,7 @@ pub(crate) const FOLLOWED: WayOn = WayOn {
     ],
     bounce: &[
         "goes_on = true;",
-        "path = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, path.depth + 1u, vec4u(0u));",
+        "path = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, step.bounce_state, vec4u(0u));",
     ],
 };
 
@@ -68,7 +68,7 @@ pub(crate) fn call(recorded: &Recorded) -> String {
         "throughput" => "path.throughput",
         "pdf" => "path.pdf",
         "pixel" => "path.pixel",
-        "depth" => "path.depth",
+        "state" => "path.state",
         other => unreachable!("no recorded function has a parameter {other}"),
     };
     let parameters = &recorded.function.parameters;

@@ -12,7 +12,7 @@ use residual_render::program::{AlphaTestNode, BoxedMaterial, Interpreted, Progra
 use residual_render::renderer::Renderer;
 use residual_render::sampler::SampleKey;
 use residual_render::surface::{PathRay, SurfaceHit};
-use residual_render::tracer::{self, Features, Path, Settings, Step, Tracer};
+use residual_render::tracer::{self, Features, Path, PathState, Settings, Step, Tracer};
 use residual_render::triangle;
 
 /// A recorded function with what is printed around it.
@@ -118,7 +118,7 @@ fn path(tape: &Tape) -> Path<Record<'_>> {
             pixel: tape.word("pixel"),
             index: tape.word("index"),
         },
-        depth: tape.word("depth"),
+        state: PathState(tape.word("state")),
     }
 }
 
@@ -224,21 +224,23 @@ fn step(
                 .truth("shadow_active", active);
         }
         if bounce {
-            let (org, dir, throughput, pdf, active) = match step.bounce {
+            let (org, dir, throughput, pdf, state, active) = match step.bounce {
                 Some(b) => (
                     b.path.ray.org,
                     b.path.ray.dir,
                     b.path.throughput,
                     b.path.pdf,
+                    b.path.state.0,
                     b.active,
                 ),
-                None => (none, none, none, zero, d.truth(false)),
+                None => (none, none, none, zero, d.uint(0), d.truth(false)),
             };
             outputs = outputs
                 .vector("bounce_org", org)
                 .vector("bounce_dir", dir)
                 .vector("bounce_throughput", throughput)
                 .real("bounce_pdf", pdf)
+                .word("bounce_state", state)
                 .truth("bounce_active", active);
         }
         outputs

@@ -326,7 +326,7 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
         }
         match lines.is_empty() {
             true => lines,
-            false => format!("{indent}if path.depth == 1u {{\n{lines}{indent}}}\n"),
+            false => format!("{indent}if path.state == 1u {{\n{lines}{indent}}}\n"),
         }
     }
 }

@@ -64,7 +64,7 @@ fn assert_named(list: &[(String, String)], place: &str, reason: &str) {
     );
 }
 
-/// Extensions that we do not render are no loss where their factor is 0, be it by default.
+/// Extensions do nothing where their factor is 0, be it by default.
 #[test]
 fn extensions_by_factor_0_are_dismissed_without_a_warning() {
     let switches = [
@@ -133,13 +133,8 @@ fn extensions_by_factor_0_are_dismissed_without_a_warning() {
             !list.iter().any(|(place, _)| place.contains("other")),
             "{list:?}"
         );
-        let warned = |w: &&residual_scenegen::desc::Warning| w.message.contains(extension);
-        assert_eq!(
-            scene.warnings.iter().filter(warned).count(),
-            1,
-            "{:?}",
-            scene.warnings
-        );
+        let is_about = |w: &residual_scenegen::desc::Warning| w.message.contains(extension);
+        assert!(!scene.warnings.iter().any(is_about), "{:?}", scene.warnings);
     }
 }
 

@@ -7,6 +7,7 @@ use residual_render::domain::Buffer;
 use residual_render::light::EnvironmentHeader;
 use residual_render::program::{LightNode, Structure};
 use residual_render::scene_data::SceneData;
+use residual_render::tracer::Between;
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{LightKindUse, MaterialUse, Plan};
 use residual_tests::pictures::first_difference;
@@ -113,10 +114,17 @@ fn a_renderer_for_everything_gives_the_same_bits() {
     let mut everything = plain.clone();
     add_black_environment(&mut everything.data);
     everything.structure = with_everything(&plain.structure);
+    everything.structure.between = Between {
+        absorption: true,
+        dispersion: true,
+    };
+    // The outside, which absorbs nothing.
+    *everything.data.buffer_mut(Buffer::Media) = vec![0; 4];
     let nobody = MaterialUse {
         name: "nobody".to_owned(),
         images: BTreeMap::new(),
         culled: false,
+        absorbs: true,
     };
     everything.materials = vec![vec![nobody]; everything.structure.programs.len()];
     let none = LightKindUse {

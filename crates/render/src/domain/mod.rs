@@ -116,11 +116,13 @@ pub enum Buffer {
     Camera,
     /// An [`ObjectRecord`](crate::triangle::ObjectRecord) for each object. Only where a renderer asks for the materials of objects.
     Objects,
+    /// A [`MediumRecord`](crate::tracer::MediumRecord) for each medium. Only where there are any.
+    Media,
 }
 
 impl Buffer {
     /// How many there are.
-    pub const COUNT: usize = Self::Objects as usize + 1;
+    pub const COUNT: usize = Self::Media as usize + 1;
 
     /// All of them, in order.
     pub const ALL: [Self; Self::COUNT] = [
@@ -138,6 +140,7 @@ impl Buffer {
         Self::Environment,
         Self::Camera,
         Self::Objects,
+        Self::Media,
     ];
 }
 

@@ -2,6 +2,7 @@
 
 pub mod elementary;
 pub mod frame;
+pub mod spectrum;
 pub mod vec3;
 pub mod warp;
 

@@ -9,7 +9,7 @@ use crate::layer::Layers;
 use crate::light::LightKind;
 use crate::renderer::{MaterialVisitor, Renderer};
 use crate::sampler::AnySampler;
-use crate::tracer::{AnyTracer, Layered, Settings, TracerNode};
+use crate::tracer::{AnyTracer, Between, Layered, Settings, TracerNode};
 use crate::triangle::program_in;
 
 /// A scene as boxed nodes over a domain.
@@ -21,6 +21,7 @@ pub struct Interpreted<'a, D: Domain> {
     camera: Box<dyn Camera<D> + Send + Sync + 'a>,
     sampler: AnySampler,
     tracer: TracerNode,
+    between: Between,
     layers: Layers,
 }
 
@@ -37,6 +38,7 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
             camera: structure.camera.boxed(),
             sampler: structure.sampler,
             tracer: structure.tracer,
+            between: structure.between,
             layers: structure.layers,
         }
     }
@@ -52,7 +54,7 @@ impl<'a, D: Domain + 'a> Renderer<D> for Interpreted<'a, D> {
     }
     fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
         Layered {
-            tracer: self.tracer.tracer(self.sampler, settings),
+            tracer: self.tracer.tracer(self.between, self.sampler, settings),
             layers: self.layers,
         }
     }

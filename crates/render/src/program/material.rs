@@ -3,7 +3,7 @@
 use super::{EmissionNode, NormalNode, Program, SourceNode, TangentNode};
 use crate::bsdf::Bsdf;
 use crate::domain::Domain;
-use crate::material::{Material, Shading, decode_normal, decode_tangent, front_only};
+use crate::material::{Material, Shading, decode_normal, decode_tangent, front_only, medium};
 use crate::math::Vec3;
 use crate::surface::{Attributes, MAX_INPUTS, Surface};
 use crate::texture::{ColorSource, ScalarSource};
@@ -19,6 +19,8 @@ pub struct BoxedMaterial<'a, D: Domain> {
     inputs: Vec<BoxedInput<'a, D>>,
     normal: Option<NormalNode>,
     tangent: Option<TangentNode>,
+    interior: Option<u32>,
+    disperses: bool,
     emission: Option<EmissionNode>,
     bsdf: Box<dyn Bsdf<D> + Send + Sync + 'a>,
 }
@@ -42,6 +44,8 @@ impl<'a, D: Domain + 'a> BoxedMaterial<'a, D> {
             inputs: inputs.collect(),
             normal: program.normal,
             tangent: program.tangent,
+            interior: program.interior,
+            disperses: program.disperses(),
             emission: program.emission,
             bsdf: program.bsdf.boxed(),
         }
@@ -52,6 +56,16 @@ impl<D: Domain> Material<D> for BoxedMaterial<'_, D> {
     #[inline(always)]
     fn attributes(&self) -> Attributes {
         self.attributes
+    }
+
+    #[inline(always)]
+    fn interior(&self, d: D, surface: &Surface<D>) -> Option<D::U> {
+        self.interior.map(|offset| medium(d, surface, offset))
+    }
+
+    #[inline(always)]
+    fn disperses(&self) -> bool {
+        self.disperses
     }
 
     #[inline(always)]

@@ -19,7 +19,7 @@ use crate::layer::Layers;
 use crate::sampler::AnySampler;
 use crate::surface::Attributes;
 use crate::texture::Input;
-use crate::tracer::TracerNode;
+use crate::tracer::{Between, TracerNode};
 
 /// An input of a program, evaluated once per point.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +79,9 @@ pub struct Program {
     pub normal: Option<NormalNode>,
     /// Replaces the tangent, after the normal.
     pub tangent: Option<TangentNode>,
+    /// The word of the parameter block with the index of the medium behind the surface, if it is the surface of a body and
+    /// the scene has media.
+    pub interior: Option<u32>,
     /// Emitted light.
     pub emission: Option<EmissionNode>,
     /// Scattering.
@@ -100,6 +103,8 @@ pub struct Structure {
     pub sampler: AnySampler,
     /// The tracer's kind.
     pub tracer: TracerNode,
+    /// What its paths meet beside surfaces.
+    pub between: Between,
     /// The layers that are filled beside radiance.
     pub layers: Layers,
 }

@@ -69,6 +69,7 @@ nodes! {
         Image = image: ImageNode,
         Product(a: Box<ScalarNode>, b: Box<ScalarNode>),
         AtLeast(a: Box<ScalarNode>, b: Box<ScalarNode>),
+        Dispersive { ior: Box<ScalarNode>, dispersion: Box<ScalarNode> },
         Between { low: Box<ScalarNode>, high: Box<ScalarNode>, at: Box<ScalarNode> },
     }
 

@@ -4,6 +4,7 @@ use super::nodes::{
     AlphaTestNode, BsdfNode, ColorNode, Field, ImageNode, LightNode, Literal, ScalarNode,
 };
 use super::{Program, SourceNode};
+use crate::bsdf::AnyInterface;
 use crate::surface::Attributes;
 use crate::texture::UvMap;
 
@@ -120,7 +121,29 @@ impl Source for Program {
     }
 }
 
+impl Program {
+    /// Whether the surface bends wavelengths differently.
+    pub fn disperses(&self) -> bool {
+        let sources = self.inputs.iter().map(|input| &input.source);
+        let disperses = |source: &SourceNode| {
+            matches!(source, SourceNode::Scalar(ScalarNode::Dispersive { .. }))
+        };
+        sources.into_iter().any(disperses)
+    }
+}
+
 impl BsdfNode {
+    /// Whether the surface is that of a body, into which light is bent.
+    pub fn encloses(&self) -> bool {
+        let interface = match self {
+            Self::Dielectric { interface, .. } | Self::RoughDielectric { interface, .. } => {
+                Some(*interface)
+            }
+            _ => None,
+        };
+        interface == Some(AnyInterface::Solid) || self.children().any(Self::encloses)
+    }
+
     /// The BSDFs that it combines.
     pub fn children(&self) -> impl Iterator<Item = &Self> {
         let fields = self.literal().fields.into_iter();

@@ -16,6 +16,7 @@ use attributes::Corners;
 use place::Place;
 
 use crate::domain::Domain;
+use crate::math::spectrum::D_LINE;
 use crate::math::{Frame, Vec3};
 
 /// The most inputs that boxed programs keep per surface point.
@@ -50,6 +51,8 @@ pub struct Surface<D: Domain> {
     pub light: D::U,
     /// Index of the object that the triangle belongs to.
     pub object: D::U,
+    /// The wavelength that the material is evaluated for, in nanometres.
+    pub wavelength: D::F,
     /// Inputs of a boxed program, evaluated once per point. Unused, and optimised away, in emitted programs.
     pub inputs: [Vec3<D::F>; MAX_INPUTS],
 }
@@ -143,6 +146,7 @@ impl<D: Domain> Surface<D> {
             params: place.triangle.params,
             light: place.triangle.light,
             object: place.triangle.object,
+            wavelength: d.lit(D_LINE),
             inputs: [Vec3::splat(zero); MAX_INPUTS],
         }
     }

@@ -5,11 +5,13 @@
 //! per point, before the BSDF, and enter it as [`Bound`] values or, interpreted, as [`Input`] numbers.
 
 mod checkerboard;
+mod dispersive;
 mod image;
 mod params;
 mod srgb;
 
 pub use checkerboard::Checkerboard;
+pub use dispersive::Dispersive;
 pub use image::{
     AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8,
     MirroredRepeat, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,

@@ -1,8 +1,8 @@
 //! A tracer chosen at run time.
 
 use super::{
-    AmbientOcclusion, AnyMis, Bounce, CostMap, Debug, DebugView, Path, PathTracer, Settings,
-    Shadow, Tracer, Vertex,
+    Absorbing, AmbientOcclusion, AnyMis, Bounce, CostMap, Debug, DebugView, Dispersing, Path,
+    PathTracer, Settings, Shadow, Tracer, Vertex,
 };
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -10,6 +10,7 @@ use crate::domain::Domain;
 use crate::light::LightKinds;
 use crate::math::Color;
 use crate::sampler::Sampler;
+use crate::surface::Surface;
 
 /// Which tracer a renderer has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -20,6 +21,15 @@ pub enum TracerNode {
     AmbientOcclusion,
     /// [`struct@Debug`].
     Debug(DebugView),
+}
+
+/// What paths of a scene meet beside surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Between {
+    /// Bodies that absorb: [`Absorbing`].
+    pub absorption: bool,
+    /// Surfaces that bend wavelengths differently: [`Dispersing`].
+    pub dispersion: bool,
 }
 
 impl TracerNode {
@@ -38,13 +48,29 @@ impl Default for TracerNode {
 impl TracerNode {
     /// The tracer.
     #[inline(always)]
-    pub fn tracer<D: Domain, S>(self, sampler: S, settings: Settings<D>) -> AnyTracer<D, S> {
+    pub fn tracer<D: Domain, S: Copy>(
+        self,
+        between: Between,
+        sampler: S,
+        settings: Settings<D>,
+    ) -> AnyTracer<D, S> {
         match self {
-            Self::Path(mis) => AnyTracer::Path(PathTracer {
-                sampler,
-                settings,
-                mis,
-            }),
+            Self::Path(mis) => {
+                let tracer = PathTracer {
+                    sampler,
+                    settings,
+                    mis,
+                };
+                match (between.absorption, between.dispersion) {
+                    (false, false) => AnyTracer::Path(tracer),
+                    (true, false) => AnyTracer::Absorbing(Absorbing { tracer }),
+                    (false, true) => AnyTracer::Dispersing(Dispersing { tracer, sampler }),
+                    (true, true) => {
+                        let tracer = Absorbing { tracer };
+                        AnyTracer::Both(Dispersing { tracer, sampler })
+                    }
+                }
+            }
             Self::AmbientOcclusion => {
                 AnyTracer::AmbientOcclusion(AmbientOcclusion { sampler, settings })
             }
@@ -59,9 +85,15 @@ impl TracerNode {
 
 /// Any of the tracers: the interpreted renderer's.
 #[derive(Clone, Copy)]
-#[expect(missing_docs, reason = "each variant is the type of its name")]
+#[expect(
+    missing_docs,
+    reason = "each variant is the type of its name, or both types"
+)]
 pub enum AnyTracer<D: Domain, S> {
     Path(PathTracer<D, S, AnyMis>),
+    Absorbing(Absorbing<PathTracer<D, S, AnyMis>>),
+    Dispersing(Dispersing<PathTracer<D, S, AnyMis>, S>),
+    Both(Dispersing<Absorbing<PathTracer<D, S, AnyMis>>, S>),
     AmbientOcclusion(AmbientOcclusion<D, S>),
     Debug(Debug<D, S>),
 }
@@ -71,6 +103,9 @@ macro_rules! each {
     ($any:expr, $tracer:ident => $call:expr) => {
         match $any {
             AnyTracer::Path($tracer) => $call,
+            AnyTracer::Absorbing($tracer) => $call,
+            AnyTracer::Dispersing($tracer) => $call,
+            AnyTracer::Both($tracer) => $call,
             AnyTracer::AmbientOcclusion($tracer) => $call,
             AnyTracer::Debug($tracer) => $call,
         }
@@ -81,6 +116,16 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for AnyTracer<D, S> {
     #[inline(always)]
     fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
         each!(self, tracer => tracer.on_emit(d, camera, pixel, sample))
+    }
+
+    #[inline(always)]
+    fn wavelength(&self, d: D, path: &Path<D>) -> Option<D::F> {
+        each!(self, tracer => tracer.wavelength(d, path))
+    }
+
+    #[inline(always)]
+    fn arrive(&self, d: D, path: &Path<D>, surface: &Surface<D>) -> Path<D> {
+        each!(self, tracer => tracer.arrive(d, path, surface))
     }
 
     #[inline(always)]

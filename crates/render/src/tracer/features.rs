@@ -69,7 +69,7 @@ impl<D: Domain> Features<D> {
     #[inline(always)]
     fn nothing(d: D, path: &Path<D>) -> Self {
         Self {
-            first: d.eq_u(path.depth, d.uint(1)),
+            first: path.state.is_first(d),
             channels: [d.lit(0.0); Layers::MAX_STRIDE - Layers::RADIANCE],
         }
     }

@@ -7,6 +7,7 @@ use crate::domain::Domain;
 use crate::layer::Layers;
 use crate::light::LightKinds;
 use crate::math::Color;
+use crate::surface::Surface;
 
 /// A set of layers: [`ConstLayers`] in emitted programs, the value itself in interpreted ones.
 pub trait LayerSet {
@@ -45,6 +46,16 @@ impl<D: Domain, T: Tracer<D>, L: LayerSet> Tracer<D> for Layered<T, L> {
     #[inline(always)]
     fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
         self.tracer.on_emit(d, camera, pixel, sample)
+    }
+
+    #[inline(always)]
+    fn wavelength(&self, d: D, path: &Path<D>) -> Option<D::F> {
+        self.tracer.wavelength(d, path)
+    }
+
+    #[inline(always)]
+    fn arrive(&self, d: D, path: &Path<D>, surface: &Surface<D>) -> Path<D> {
+        self.tracer.arrive(d, path, surface)
     }
 
     #[inline(always)]

@@ -7,25 +7,31 @@
 //! What a scene decides is static: a method that has nothing to give returns `None`, and its code disappears. What a
 //! path decides is a mask, so that lanes stay together.
 
+mod absorbing;
 mod ambient_occlusion;
 mod any;
 mod cost_map;
 mod debug;
+mod dispersing;
 mod features;
 mod layered;
 mod mis;
 mod path;
+mod path_state;
 mod settings;
 mod step;
 
+pub use absorbing::{Absorbing, MediumRecord};
 pub use ambient_occlusion::AmbientOcclusion;
-pub use any::{AnyTracer, TracerNode};
+pub use any::{AnyTracer, Between, TracerNode};
 pub use cost_map::CostMap;
 pub use debug::{Debug, DebugView};
+pub use dispersing::Dispersing;
 pub use features::Features;
 pub use layered::{ConstLayers, LayerSet, Layered};
 pub use mis::{AnyMis, BalanceHeuristic, BsdfOnly, LightsOnly, Mis, PowerHeuristic};
 pub use path::PathTracer;
+pub use path_state::{MAX_DEPTH, MAX_MEDIA, PathState};
 pub use settings::{Settings, TracerOptions};
 pub use step::{Step, shade};
 
@@ -50,8 +56,8 @@ pub struct Path<D: Domain> {
     pub pdf: D::F,
     /// Its random numbers.
     pub key: SampleKey<D::U>,
-    /// Index of the vertex that the ray is looking for; the first is 1.
-    pub depth: D::U,
+    /// What it remembers of its way.
+    pub state: PathState<D::U>,
 }
 
 /// A shadow ray with what it is worth if nothing is in its way.
@@ -85,6 +91,10 @@ pub struct Vertex<'a, D: Domain, B> {
     pub emission: Option<Color<D::F>>,
     /// Its BSDF.
     pub bsdf: &'a B,
+    /// Index of the medium behind the surface, if it is the surface of a body and the scene has media.
+    pub interior: Option<D::U>,
+    /// The surface bends wavelengths differently.
+    pub disperses: bool,
     /// Unit direction back along the path, world space.
     pub wo: Vec3<D::F>,
 }
@@ -93,6 +103,18 @@ pub struct Vertex<'a, D: Domain, B> {
 pub trait Tracer<D: Domain> {
     /// The path that begins with a camera ray: sample `sample` of the pixel at (x, y).
     fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D>;
+
+    /// The wavelength that materials are evaluated for, in nanometres, if the path has one.
+    #[inline(always)]
+    fn wavelength(&self, _d: D, _path: &Path<D>) -> Option<D::F> {
+        None
+    }
+
+    /// The path as it arrives at a surface: with what it has lost on the way.
+    #[inline(always)]
+    fn arrive(&self, _d: D, path: &Path<D>, _surface: &Surface<D>) -> Path<D> {
+        *path
+    }
 
     /// The contribution of the vertex itself.
     #[inline(always)]

@@ -10,7 +10,7 @@ use crate::sampler::Sampler;
 use crate::surface::PathRay;
 
 /// Pairs of random numbers that a vertex uses.
-const PAIRS: u32 = 4;
+pub(super) const PAIRS: u32 = 4;
 /// Which pair is for what. Those of vertex 0, the camera, come first.
 const LIGHT: u32 = 0;
 const LIGHT_TEXEL: u32 = 1;
@@ -31,7 +31,7 @@ pub struct PathTracer<D: Domain, S, M = PowerHeuristic> {
 impl<D: Domain, S: Sampler<D>, M: Mis<D>> PathTracer<D, S, M> {
     #[inline(always)]
     fn pair(&self, d: D, path: &Path<D>, pair: u32) -> [D::F; 2] {
-        let dimension = path.depth * d.uint(PAIRS) + d.uint(pair);
+        let dimension = path.state.depth(d) * d.uint(PAIRS) + d.uint(pair);
         self.sampler.pair(d, path.key, dimension)
     }
 
@@ -78,7 +78,7 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
 
     #[inline(always)]
     fn goes_on(&self, d: D, path: &Path<D>) -> D::M {
-        d.lt_u(path.depth, self.settings.max_depth)
+        d.lt_u(path.state.depth(d), self.settings.max_depth)
     }
 
     #[inline(always)]
@@ -156,7 +156,7 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
             None => throughput,
         };
         let largest = outside.max_component(d);
-        let early = d.lt_u(path.depth, self.settings.roulette_from);
+        let early = d.lt_u(path.state.depth(d), self.settings.roulette_from);
         let one = d.lit(1.0);
         let survival = d.select(early, one, d.min(largest, d.lit(0.95)));
         let alive = d.lt(d.lit(0.0), largest) & (early | d.lt(roulette, survival));
@@ -167,7 +167,7 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
                 throughput: throughput.scale(scale),
                 pdf: sample.pdf,
                 key: path.key,
-                depth: path.depth + d.uint(1),
+                state: path.state.next(d),
             },
             active: alive & consistent(d, surface, dir, sample.wi),
         })

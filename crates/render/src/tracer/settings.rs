@@ -1,6 +1,6 @@
 //! What a render tells its tracer: data, so that no option compiles anything anew.
 
-use super::Path;
+use super::{MAX_DEPTH, Path, PathState};
 use crate::camera::Camera;
 use crate::domain::Domain;
 use crate::math::Vec3;
@@ -14,7 +14,7 @@ pub struct TracerOptions {
     pub image: [u32; 2],
     /// Seed of the random numbers.
     pub seed: u32,
-    /// Most vertices a path may have; 1 is emission seen directly, 2 adds direct light.
+    /// Most vertices a path may have; 1 is emission seen directly, 2 adds direct light. More than [`MAX_DEPTH`] are as many.
     pub max_depth: u32,
     /// First vertex at which Russian roulette may end a path.
     pub roulette_from: u32,
@@ -42,7 +42,7 @@ impl<D: Domain> Settings<D> {
         Self {
             image: options.image.map(|pixels| d.lit(f64::from(pixels))),
             seed: d.uint(options.seed),
-            max_depth: d.uint(options.max_depth),
+            max_depth: d.uint(options.max_depth.min(MAX_DEPTH)),
             roulette_from: d.uint(options.roulette_from),
             reach: d.lit(f64::from(options.reach)),
         }
@@ -70,7 +70,7 @@ impl<D: Domain> Settings<D> {
             throughput: Vec3::splat(one),
             pdf: d.lit(0.0),
             key,
-            depth: d.uint(1),
+            state: PathState::first(d),
         }
     }
 }

@@ -39,12 +39,18 @@ where
 {
     let wo = -path.ray.dir;
     let mut surface = Surface::new(d, material.attributes(), hit, path.ray.dir);
+    if let Some(wavelength) = tracer.wavelength(d, path) {
+        surface.wavelength = wavelength;
+    }
+    let path = &tracer.arrive(d, path, &surface);
     let shading = material.shade(d, &mut surface, wo);
     let vertex = Vertex {
         surface: &surface,
         triangle: hit.prim,
         emission: shading.emission,
         bsdf: &shading.bsdf,
+        interior: material.interior(d, &surface),
+        disperses: material.disperses(),
         wo,
     };
     let layers = tracer.layers();

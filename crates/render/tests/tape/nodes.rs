@@ -9,7 +9,7 @@ use residual_render::program::{
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Input, UvMap};
-use residual_render::tracer::TracerNode;
+use residual_render::tracer::{Between, TracerNode};
 
 use crate::common::{IMAGE, Random, TRANSFORM, TRIANGLES};
 
@@ -45,6 +45,7 @@ pub(crate) fn program(bsdf: BsdfNode, inputs: Vec<InputNode>) -> Program {
         inputs,
         normal: None,
         tangent: None,
+        interior: None,
         emission: None,
         bsdf,
         alpha_test: None,
@@ -191,6 +192,7 @@ pub(crate) fn structure(lights: Vec<LightNode>) -> Structure {
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),
+        between: Between::default(),
         layers: Layers::NONE,
     }
 }

@@ -10,7 +10,8 @@ use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::surface::{PathRay, SurfaceHit};
 use residual_render::texture::Input;
 use residual_render::tracer::{
-    self, DebugView, Path, PathTracer, PowerHeuristic, Settings, Tracer, TracerNode, TracerOptions,
+    self, DebugView, Path, PathState, PathTracer, PowerHeuristic, Settings, Tracer, TracerNode,
+    TracerOptions,
 };
 
 use crate::check::check;
@@ -65,7 +66,7 @@ impl Formula for CameraAndSampler {
             throughput,
             pdf,
             key,
-            depth,
+            state: PathState(state),
         } = tracer.on_emit(d, &camera, [x, y], index);
         let through = camera.ray(d, [out.reals[0], out.reals[1]]);
         for ray in [ray, through] {
@@ -75,7 +76,7 @@ impl Formula for CameraAndSampler {
         }
         out.vector(throughput);
         out.real(pdf);
-        out.words.extend([key.pixel, key.index, depth]);
+        out.words.extend([key.pixel, key.index, state]);
         out
     }
 }
@@ -103,7 +104,7 @@ impl Formula for AnyStep {
         (reals, words)
     }
     fn run<D: Domain>(&self, d: D, r: &[D::F], words: &[D::U]) -> Yield<D> {
-        let &[prim, pixel, index, depth] = words else {
+        let &[prim, pixel, index, state] = words else {
             unreachable!()
         };
         let mut program = program(bsdfs().pop().unwrap(), inputs(false));
@@ -130,7 +131,7 @@ impl Formula for AnyStep {
             throughput: vec3(r[5], r[6], r[7]),
             pdf: r[8],
             key: SampleKey { pixel, index },
-            depth,
+            state: PathState(state),
         };
         let tracer = scene.tracer(Settings::new(d, &OPTIONS));
         let step = tracer::shade(d, &tracer, &path, &hit, &material, scene.lights());
@@ -153,7 +154,7 @@ impl Formula for AnyStep {
             out.vector(bounce.path.ray.dir);
             out.vector(bounce.path.throughput);
             out.real(bounce.path.pdf);
-            out.words.push(bounce.path.depth);
+            out.words.push(bounce.path.state.0);
             out.truths.push(bounce.active);
         }
         if let Some(seen) = tracer.on_miss(d, &path, scene.lights()) {

@@ -1,7 +1,7 @@
 //! Surfaces to BSDFs: which lobes a description calls for, and which of them its inputs leave nothing of.
 
 use residual_render::bsdf::AnyInterface;
-use residual_render::program::{BsdfNode, ColorNode};
+use residual_render::program::{BsdfNode, ColorNode, ScalarNode};
 
 use super::program::{Builder, is_black};
 use crate::desc::{ColorInput, PhongSurface, SurfaceDesc};
@@ -37,13 +37,18 @@ impl Builder<'_> {
         }
     }
 
-    pub(super) fn dielectric(
+    fn dielectric(&mut self, tint: ColorNode, ior: f32, interface: AnyInterface) -> BsdfNode {
+        let ior = self.sources.number(ior);
+        self.smooth_dielectric(tint, ior, interface)
+    }
+
+    /// A smooth dielectric.
+    pub(super) fn smooth_dielectric(
         &mut self,
         tint: ColorNode,
-        ior: f32,
+        ior: ScalarNode,
         interface: AnyInterface,
     ) -> BsdfNode {
-        let ior = self.sources.number(ior);
         BsdfNode::Dielectric {
             transmittance: self.color("transmittance", tint),
             ior: self.scalar("ior", ior),

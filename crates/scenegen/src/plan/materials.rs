@@ -8,13 +8,14 @@ use residual_render::tracer::{DebugView, TracerNode};
 use super::closed::is_closed;
 use super::geometry::is_smooth;
 use super::images::Images;
+use super::media::Media;
 use super::opacity::Opacity;
 use super::options::{CullingRule, PlanOptions};
 use super::planned::MaterialUse;
 use super::planned_materials::{Materials, PlannedMaterial};
 use super::program::Builder;
 use super::sources::Sources;
-use crate::desc::{SceneDesc, SurfaceDesc};
+use crate::desc::{Attenuation, MaterialDesc, SceneDesc, SurfaceDesc};
 
 /// Plans the materials of all instanced meshes that are seen.
 pub(super) fn plan_materials(
@@ -27,7 +28,11 @@ pub(super) fn plan_materials(
         ..Materials::default()
     };
     let mut indices = BTreeMap::new();
-    for (material, available) in available_attributes(scene).into_iter().enumerate() {
+    let available = available_attributes(scene);
+    let mut media = Media::default();
+    let has_media = (0..available.len())
+        .any(|material| available[material].is_some() && absorbs(scene, material));
+    for (material, available) in available.into_iter().enumerate() {
         let Some(available) = available else { continue };
         let desc = &scene.materials[material];
         let place = format!("material {:?}", desc.name);
@@ -53,12 +58,17 @@ pub(super) fn plan_materials(
         if options.tracer == TracerNode::Debug(DebugView::TextureCoordinates) {
             program.attributes.uv0 |= available.uv0;
         }
+        if has_media && program.bsdf.encloses() {
+            let medium = media.index(attenuation(desc));
+            program.interior = Some(builder.sources.index(medium));
+        }
         let collected = builder.sources.collected();
         let transmits = program.bsdf.transmits();
         let culled = options.culling == CullingRule::Gltf && !desc.double_sided && !transmits;
         let alpha_tested = program.alpha_test.is_some();
         // Programs are the same if they print the same: floats print exactly, so this neither merges nor splits
         // what must not be.
+        let program_absorbs = program.interior.is_some() && attenuation(desc).is_some();
         let key = format!("{program:?}");
         let index = *indices.entry(key).or_insert_with(|| {
             materials.programs.push(program);
@@ -69,6 +79,7 @@ pub(super) fn plan_materials(
             name: desc.name.clone(),
             images: collected.images,
             culled,
+            absorbs: program_absorbs,
         });
         materials.planned[material] = Some(PlannedMaterial {
             program: index,
@@ -79,7 +90,29 @@ pub(super) fn plan_materials(
         materials.params.extend(collected.params);
         materials.dismissed.extend(collected.dismissed);
     }
+    materials.media = match has_media {
+        true => media.words(),
+        false => Vec::new(),
+    };
     materials
+}
+
+fn attenuation(material: &MaterialDesc) -> Option<Attenuation> {
+    match &material.surface {
+        SurfaceDesc::MetallicRoughness(surface) => surface.attenuation,
+        _ => None,
+    }
+}
+
+/// Whether a material's surfaces bound bodies that absorb.
+fn absorbs(scene: &SceneDesc, material: usize) -> bool {
+    let desc = &scene.materials[material];
+    let SurfaceDesc::MetallicRoughness(surface) = &desc.surface else {
+        return false;
+    };
+    surface.attenuation.is_some()
+        && surface.transmission.factor > 0.0
+        && (surface.solid || encloses_a_body(scene, material))
 }
 
 /// For each material that some instance uses, the attributes that any of its meshes has.

@@ -125,14 +125,34 @@ impl Builder<'_> {
         interface: AnyInterface,
     ) -> BsdfNode {
         if self.sources.known(&surface.roughness) == Some(0.0) {
-            return self.dielectric(tint, surface.ior, interface);
+            let ior = self.refraction(surface, surface.ior, interface);
+            return self.smooth_dielectric(tint, ior, interface);
         }
-        let ior = self.sources.number(surface.ior.max(LEAST_ROUGH_IOR));
+        let ior = surface.ior.max(LEAST_ROUGH_IOR);
+        let ior = self.refraction(surface, ior, interface);
         BsdfNode::RoughDielectric {
             transmittance: self.color("transmittance", tint),
             ior: self.scalar("ior", ior),
             roughness: self.roughness(surface),
             interface,
+        }
+    }
+
+    /// The index of refraction, of which dispersion is seen where rays are bent.
+    fn refraction(
+        &mut self,
+        surface: &MetallicRoughness,
+        ior: f32,
+        interface: AnyInterface,
+    ) -> ScalarNode {
+        let node = self.sources.number(ior);
+        let is_bent = interface == AnyInterface::Solid && ior > 1.0;
+        if surface.dispersion == 0.0 || !is_bent {
+            return node;
+        }
+        ScalarNode::Dispersive {
+            ior: Box::new(node),
+            dispersion: Box::new(self.sources.number(surface.dispersion)),
         }
     }
 

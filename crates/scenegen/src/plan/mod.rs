@@ -17,6 +17,7 @@ mod geometry;
 mod images;
 mod lights;
 mod materials;
+mod media;
 mod metallic_roughness;
 mod opacity;
 mod options;
@@ -28,9 +29,9 @@ mod sources;
 use glam::DVec3;
 use residual_render::domain::Buffer;
 use residual_render::layer::Layer;
-use residual_render::program::Structure;
+use residual_render::program::{Program, Structure};
 use residual_render::scene_data::SceneData;
-use residual_render::tracer::TracerNode;
+use residual_render::tracer::{Between, TracerNode};
 
 pub use camera_choice::{CameraChoice, View};
 use clip_distances::Clipping;
@@ -97,6 +98,14 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     }
     images.pack(scene, &mut data)?;
     *data.buffer_mut(Buffer::Params) = materials.params;
+    let between = match options.tracer {
+        TracerNode::Path(_) => Between {
+            absorption: !materials.media.is_empty(),
+            dispersion: materials.programs.iter().any(Program::disperses),
+        },
+        TracerNode::AmbientOcclusion | TracerNode::Debug(_) => Between::default(),
+    };
+    *data.buffer_mut(Buffer::Media) = materials.media;
 
     let mut plan = Plan {
         name: scene.name.clone(),
@@ -108,6 +117,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             camera,
             sampler: options.sampler,
             tracer: options.tracer,
+            between,
             layers: options.layers,
         },
         data,

@@ -82,6 +82,8 @@ pub struct MaterialUse {
     pub images: BTreeMap<u32, String>,
     /// Its surfaces are not seen from behind.
     pub culled: bool,
+    /// Its surfaces bound bodies that absorb.
+    pub absorbs: bool,
 }
 
 /// The lights of a kind.

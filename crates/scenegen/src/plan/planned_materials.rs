@@ -24,6 +24,8 @@ pub(super) struct Materials {
     pub(super) programs: Vec<Program>,
     pub(super) uses: Vec<Vec<MaterialUse>>,
     pub(super) params: Vec<u32>,
+    /// What [`Buffer::Media`](residual_render::domain::Buffer::Media) holds; nothing where nothing absorbs.
+    pub(super) media: Vec<u32>,
     /// By the material's index in the description.
     pub(super) planned: Vec<Option<PlannedMaterial>>,
     pub(super) dismissed: Vec<Dismissed>,

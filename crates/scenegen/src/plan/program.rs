@@ -50,6 +50,7 @@ impl Builder<'_> {
             inputs,
             normal,
             tangent,
+            interior: None,
             emission,
             bsdf,
             alpha_test,

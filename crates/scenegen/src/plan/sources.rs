@@ -107,6 +107,13 @@ impl<'a> Sources<'a> {
         offset
     }
 
+    /// An index, always a parameter.
+    pub(super) fn index(&mut self, index: u32) -> u32 {
+        let offset = self.params.len() as u32;
+        self.params.push(index);
+        offset
+    }
+
     /// A number: 0 and 1 are always constants, since they remove code.
     pub(super) fn number(&mut self, value: f32) -> ScalarNode {
         if value == 0.0 || value == 1.0 || self.binding == Binding::Constants {

@@ -36,7 +36,7 @@ fn follow_path(@builtin(global_invocation_id) id: vec3u) {
         path.hit = vec4u(queue, bitcast<u32>(hit.u), bitcast<u32>(hit.v), hit.prim);
         //[visits
         // The processor makes a colour of it.
-        if path.depth == 1u {
+        if path.state == 1u {
             samples[slot * STRIDE] = f32(visits);
         }
         //]

@@ -36,7 +36,7 @@ fn trace(
             paths[slot].hit = vec4u(queue, bitcast<u32>(hit.u), bitcast<u32>(hit.v), hit.prim);
             //[visits
             // The processor makes a colour of it.
-            if paths[slot].depth == 1u {
+            if paths[slot].state == 1u {
                 samples[slot * STRIDE] = f32(visits);
             }
             //]

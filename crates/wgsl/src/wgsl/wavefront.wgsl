@@ -29,7 +29,8 @@ struct Path {
     dir: vec3f,
     pixel: u32,
     throughput: vec3f,
-    depth: u32,
+    // Depth and medium; 1 for the ray from the camera.
+    state: u32,
     // Program, u, v, triangle.
     hit: vec4u,
 }

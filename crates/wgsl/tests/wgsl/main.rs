@@ -3,6 +3,7 @@
 mod naga_checks;
 mod structures;
 
+use residual_render::bsdf::AnyInterface;
 use residual_render::domain::Domain;
 use residual_render::domain::tape::{Outputs, Record, Tape};
 use residual_render::layer::{Layer, Layers};
@@ -12,7 +13,7 @@ use residual_render::program::{
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
-use residual_render::tracer::{DebugView, TracerNode};
+use residual_render::tracer::{Between, DebugView, TracerNode};
 use residual_wgsl::{Arithmetic, Binding, KernelSet, Mapping, function_module, scene_module};
 
 use crate::naga_checks::{accept, no_dead_code};
@@ -120,6 +121,35 @@ fn every_tracer_and_layer() {
             assert_eq!(text.contains("bounce_active"), bounce);
             assert_eq!(text.contains("albedo: vec3f"), layers != Layers::NONE);
         }
+    }
+}
+
+/// Absorption and dispersion are printed where a scene has them, and nowhere else.
+#[test]
+fn what_paths_meet_between_surfaces() {
+    for (absorption, dispersion) in [(false, false), (true, false), (false, true), (true, true)] {
+        let mut scene = everything();
+        scene.between = Between {
+            absorption,
+            dispersion,
+        };
+        let mut glass = program(BsdfNode::Dielectric {
+            transmittance: Input(0),
+            ior: Input(3),
+            interface: AnyInterface::Solid,
+        });
+        glass.interior = absorption.then_some(8);
+        if dispersion {
+            let ior = ScalarNode::Dispersive {
+                ior: Box::new(ScalarNode::Param(6)),
+                dispersion: Box::new(ScalarNode::Param(7)),
+            };
+            glass.inputs[3] = scalar("ior", ior);
+        }
+        scene.programs.push(glass);
+        let text = scene_module(&scene);
+        no_dead_code(&text);
+        assert_eq!(text.contains("bases.media"), absorption);
     }
 }
 

@@ -9,7 +9,7 @@ use residual_render::program::{
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Input, UvMap};
-use residual_render::tracer::TracerNode;
+use residual_render::tracer::{Between, TracerNode};
 
 pub(crate) fn color(name: &'static str, node: ColorNode) -> InputNode {
     InputNode {
@@ -36,6 +36,7 @@ pub(crate) fn program(bsdf: BsdfNode) -> Program {
         ],
         normal: None,
         tangent: None,
+        interior: None,
         emission: None,
         bsdf,
         alpha_test: None,
@@ -49,6 +50,7 @@ pub(crate) fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Struc
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),
+        between: Between::default(),
         layers: Layers::NONE,
     }
 }

@@ -66,6 +66,19 @@ fn implementation(out: &mut Module, program: &Program, images: &Images<'_>) -> f
         out,
         "{PROGRAM}\n        fn attributes(&self) -> Attributes {{\n            {attributes}\n        }}\n"
     )?;
+    if let Some(offset) = program.interior {
+        out.import("material", &["medium"]);
+        writeln!(
+            out,
+            "        #[inline(always)]\n        fn interior(&self, d: D, surface: &Surface<D>) -> Option<D::U> {{\n            Some(medium(d, surface, {offset}))\n        }}\n"
+        )?;
+    }
+    if program.disperses() {
+        writeln!(
+            out,
+            "        #[inline(always)]\n        fn disperses(&self) -> bool {{\n            true\n        }}\n"
+        )?;
+    }
     out.write_str(SHADE)?;
 
     let names = input_names(&program.inputs);

@@ -39,7 +39,14 @@ pub(super) fn associated_type(out: &mut Module, structure: &Structure) -> fmt::R
     if let TracerNode::Path(mis) = structure.tracer {
         parameters.push(weights(mis));
     }
-    let tracer = Code::generic(name(structure.tracer), parameters);
+    let mut tracer = Code::generic(name(structure.tracer), parameters);
+    if structure.between.absorption {
+        tracer = Code::generic(Name::of("tracer", "Absorbing"), [tracer]);
+    }
+    if structure.between.dispersion {
+        let parameters = [tracer, sampler(structure)];
+        tracer = Code::generic(Name::of("tracer", "Dispersing"), parameters);
+    }
     let tracer = match structure.layers {
         Layers::NONE => tracer,
         layers => {
@@ -68,7 +75,14 @@ pub(super) fn method(out: &mut Module, structure: &Structure) -> fmt::Result {
             fields.push(("view", Code::Word(view)));
         }
     }
-    let tracer = Code::literal(name(structure.tracer), fields);
+    let mut tracer = Code::literal(name(structure.tracer), fields);
+    if structure.between.absorption {
+        tracer = Code::literal(Name::of("tracer", "Absorbing"), [("tracer", tracer)]);
+    }
+    if structure.between.dispersion {
+        let fields = [("tracer", tracer), ("sampler", sampler(structure))];
+        tracer = Code::literal(Name::of("tracer", "Dispersing"), fields);
+    }
     let tracer = match structure.layers {
         Layers::NONE => tracer,
         _ => {

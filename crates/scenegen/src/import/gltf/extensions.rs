@@ -35,6 +35,7 @@ impl Support {
             | "KHR_materials_anisotropy"
             | "KHR_materials_clearcoat"
             | "KHR_materials_diffuse_transmission"
+            | "KHR_materials_dispersion"
             | "KHR_materials_emissive_strength"
             | "KHR_materials_ior"
             | "KHR_materials_iridescence"
@@ -56,7 +57,7 @@ impl Support {
             | "KHR_animation_pointer"
             | "KHR_xmp"
             | "KHR_xmp_json_ld" => Self::WithoutEffect,
-            "KHR_materials_dispersion" => Self::MaterialSwitch("dispersion"),
+            "KHR_materials_volume_scatter" => Self::MaterialSwitch("multiscatterColor"),
             "MSFT_texture_dds" => Self::ReportedWhereUsed,
             _ => Self::Unknown,
         }

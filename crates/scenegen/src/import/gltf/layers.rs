@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use super::extension_members::ExtensionMembers;
 use super::members::Members;
 use crate::desc::{MetallicRoughness, ScalarInput};
+use crate::effect::Effect;
 use crate::import::error::Fault;
 
 /// The surface with what these extensions say of it.
@@ -29,6 +30,9 @@ pub(super) fn read(
             ],
             [1.0; 3],
         )?;
+    }
+    if let Some(extension) = of("KHR_materials_dispersion") {
+        surface.dispersion = extension.number(members, "dispersion", (0.0..=f32::MAX, 0.0));
     }
     if let Some(extension) = of("KHR_materials_anisotropy") {
         surface.anisotropy = extension.scalar(
@@ -93,5 +97,54 @@ pub(super) fn read(
             );
         }
     }
+    dismiss_without_effect(&surface, extensions, members);
     Ok(surface)
+}
+
+/// Notes the extensions whose factor is 0.
+fn dismiss_without_effect(
+    surface: &MetallicRoughness,
+    extensions: &Map<String, Value>,
+    members: &mut Members<'_, '_>,
+) {
+    let switches = [
+        (
+            "KHR_materials_diffuse_transmission",
+            Effect::DiffuseTransmission,
+            surface.diffuse_transmission.factor,
+        ),
+        (
+            "KHR_materials_dispersion",
+            Effect::Dispersion,
+            surface.dispersion,
+        ),
+        (
+            "KHR_materials_anisotropy",
+            Effect::Anisotropy,
+            surface.anisotropy.factor,
+        ),
+        (
+            "KHR_materials_iridescence",
+            Effect::Iridescence,
+            surface.iridescence.factor,
+        ),
+        (
+            "KHR_materials_sheen",
+            Effect::Sheen,
+            surface.sheen_color.factor.iter().sum(),
+        ),
+        (
+            "KHR_materials_clearcoat",
+            Effect::ClearCoat,
+            surface.clearcoat.factor,
+        ),
+    ];
+    for (extension, effect, factor) in switches {
+        if factor == 0.0 && extensions.contains_key(extension) {
+            let reason = format!("{extension} is there, and its factor is 0");
+            members
+                .warnings
+                .dismiss(Some(effect), &*members.place, reason);
+        }
+    }
 }

@@ -7,7 +7,7 @@ use gltf::json::extensions::material::{
 
 use super::layers;
 use super::members::Members;
-use crate::desc::{ColorInput, MetallicRoughness, ScalarInput, SurfaceDesc};
+use crate::desc::{Attenuation, ColorInput, MetallicRoughness, ScalarInput, SurfaceDesc};
 use crate::import::error::Fault;
 
 /// Of a texture's channels, the one that holds roughness: green.
@@ -102,6 +102,7 @@ fn metallic_roughness(
         0.0..=1.0,
         0.0,
     );
+    let (solid, attenuation) = volume(members, extensions.volume.as_ref());
     let surface = MetallicRoughness {
         base_color,
         metallic: ScalarInput {
@@ -130,31 +131,45 @@ fn metallic_roughness(
             factor: transmission_factor,
             texture: transmission_texture.map(|texture| (texture, 0)),
         },
-        solid: is_solid(members, extensions.volume.as_ref(), transmission_factor),
+        solid,
+        attenuation,
         ..MetallicRoughness::default()
     };
     layers::read(surface, &extensions.others, members)
 }
 
-/// KHR_materials_volume: whether the surface bounds a solid.
-fn is_solid(
-    members: &mut Members<'_, '_>,
-    volume: Option<&Volume>,
-    transmission_factor: f32,
-) -> bool {
-    let Some(volume) = volume else { return false };
-    let is_solid = members.number(
-        "thicknessFactor",
-        volume.thickness_factor.0,
-        0.0..=f32::MAX,
-        0.0,
-    ) > 0.0;
-    let absorbs =
-        volume.attenuation_color.0 != [1.0; 3] && volume.attenuation_distance.0.is_finite();
-    if is_solid && absorbs && transmission_factor > 0.0 {
-        members.warn("the attenuation of KHR_materials_volume is not rendered");
+/// What is left of light that a solid absorbs wholly after the attenuation distance: more than nothing, of which there would
+/// be no logarithm.
+const LEAST_ATTENUATION_COLOR: f32 = 1e-5;
+
+/// KHR_materials_volume: whether the surface bounds a solid, and what that absorbs.
+fn volume(members: &mut Members<'_, '_>, volume: Option<&Volume>) -> (bool, Option<Attenuation>) {
+    let Some(volume) = volume else {
+        return (false, None);
+    };
+    let thickness = volume.thickness_factor.0;
+    let thickness = members.number("thicknessFactor", thickness, 0.0..=f32::MAX, 0.0);
+    let color = members.color(
+        "attenuationColor",
+        volume.attenuation_color.0,
+        0.0..=1.0,
+        1.0,
+    );
+    let distance = volume.attenuation_distance.0;
+    if color == [1.0; 3] || distance == f32::INFINITY {
+        return (thickness > 0.0, None);
     }
-    is_solid
+    if !(distance > 0.0) {
+        members.warn(format!(
+            "attenuationDistance {distance} is not positive; nothing is absorbed"
+        ));
+        return (thickness > 0.0, None);
+    }
+    let attenuation = Attenuation {
+        color: color.map(|c| c.max(LEAST_ATTENUATION_COLOR)),
+        distance,
+    };
+    (thickness > 0.0, Some(attenuation))
 }
 
 /// KHR_materials_ior: 0, which stands for Fresnel 1, or at least 1.
