@@ -71,9 +71,9 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
 mod program0 {
     use super::render::bsdf::{Anisotropic, Bsdf, Glossy, Schlick};
     use super::render::domain::Domain;
-    use super::render::material::{Material, Shading, decode_tangent};
+    use super::render::material::{Material, Shading};
     use super::render::math::Vec3;
-    use super::render::surface::{Attributes, Surface};
+    use super::render::surface::{Attributes, Surface, decode_tangent};
     use super::render::texture::{Bound, ColorSource, Const, Param, ScalarSource};
 
     pub struct Program;

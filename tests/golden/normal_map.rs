@@ -86,9 +86,9 @@ mod program0 {
 
     use super::render::bsdf::{Bsdf, Diffuse};
     use super::render::domain::Domain;
-    use super::render::material::{Material, Shading, decode_normal};
+    use super::render::material::{Material, Shading};
     use super::render::math::Vec3;
-    use super::render::surface::{Attributes, Surface};
+    use super::render::surface::{Attributes, Surface, decode_normal};
     use super::render::texture::{Bound, ColorSource, Param, ScalarSource};
 
     pub struct Program;

@@ -666,7 +666,48 @@ fn attributes() -> Vec<Tiny> {
                 scene
             },
         ),
+        varnished("smooth_coat", |texture, _| MaterialDesc {
+            normal_map: Some(NormalMap {
+                texture,
+                scale: 0.5,
+            }),
+            ..surface("varnish", varnish(None))
+        }),
+        varnished("bumpy_coat", |texture, scale| {
+            surface("orange peel", varnish(Some(NormalMap { texture, scale })))
+        }),
     ]
+}
+
+/// A metal under a clear coat.
+fn varnish(clearcoat_normal: Option<NormalMap>) -> MetallicRoughness {
+    MetallicRoughness {
+        clearcoat: scalar(1.0),
+        clearcoat_roughness: scalar(0.2),
+        clearcoat_normal,
+        ..metallic_roughness([0.7, 0.5, 0.4], 1.0, 0.4)
+    }
+}
+
+/// Sheets whose base or coat has bumps.
+fn varnished(name: &'static str, material: impl FnOnce(TextureUse, f32) -> MaterialDesc) -> Tiny {
+    let effects = [
+        &TEXTURE[..],
+        &[
+            Effect::LinearTexels,
+            Effect::NormalMaps,
+            Effect::MetallicReflection,
+            Effect::ClearCoat,
+        ],
+    ];
+    let mut scene = textured(false, [Wrap::Repeat; 2], Filter::Linear, |texture| {
+        material(texture, 0.7)
+    });
+    for mesh in &mut scene.meshes {
+        let tangent = Vec4::new(0.8, 0.6, 0.0, 1.0);
+        mesh.tangents = Some(vec![tangent; mesh.positions.len()]);
+    }
+    Tiny::new(name, &effects.concat(), &[Effect::DiffuseReflection], scene)
 }
 
 fn alphas() -> Vec<Tiny> {

@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use residual_render::program::{
-    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, FresnelNode, LightNode, Literal,
-    RoughnessNode, ScalarNode, SourceNode, Structure,
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, FresnelNode, LayerFrameNode,
+    LightNode, Literal, RoughnessNode, ScalarNode, SourceNode, Structure,
 };
 use residual_render::texture::Input;
 use residual_scenegen::effects::{Effect, Effects};
@@ -143,6 +143,7 @@ fn literals(structure: &Structure) -> Vec<Literal<'_>> {
                 Field::Bsdf(node) => add(node.literal(), all),
                 Field::Fresnel(node) => add(node.literal(), all),
                 Field::Roughness(node) => add(node.literal(), all),
+                Field::LayerFrame(node) => add(node.literal(), all),
                 Field::ColorSource(node) => add(node.literal(), all),
                 Field::ScalarSource(node) => add(node.literal(), all),
                 _ => {}
@@ -237,6 +238,7 @@ fn every_row_of_the_node_table_is_emitted() {
         ("bsdf", BsdfNode::NAMES),
         ("bsdf", FresnelNode::NAMES),
         ("bsdf", RoughnessNode::NAMES),
+        ("bsdf", LayerFrameNode::NAMES),
         ("texture", ColorNode::NAMES),
         ("texture", ScalarNode::NAMES),
         ("light", LightNode::NAMES),

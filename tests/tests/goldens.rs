@@ -36,6 +36,7 @@ goldens! {
     alpha_blending
     alpha_mask
     brushed_metal
+    bumpy_coat
     car_paint
     checkerboard
     clamp_wrap
@@ -67,6 +68,7 @@ goldens! {
     prism
     second_uv_set
     smooth_normals
+    smooth_coat
     soap_film
     solid_glass
     specular_texture

@@ -124,6 +124,7 @@ impl Inputs<'_> {
             BsdfNode::RoughDielectric { .. } => Err("a rough dielectric".to_owned()),
             BsdfNode::DiffuseTransmission { .. } => Err("diffuse transmission".to_owned()),
             BsdfNode::Sheen { .. } => Err("sheen".to_owned()),
+            BsdfNode::OwnNormal { .. } => Err("a coat with its own normals".to_owned()),
             BsdfNode::Phong { .. } => Err("a Phong lobe".to_owned()),
             BsdfNode::Mix { .. } | BsdfNode::Sum { .. } => Err("a mix of lobes".to_owned()),
         }

@@ -288,6 +288,8 @@ pub struct MetallicRoughness {
     pub clearcoat: ScalarInput,
     /// KHR_materials_clearcoat: roughness (green channel).
     pub clearcoat_roughness: ScalarInput,
+    /// KHR_materials_clearcoat: normal map of the coat; without it the coat has the normals of the mesh.
+    pub clearcoat_normal: Option<NormalMap>,
 }
 
 /// What a body absorbs.
@@ -325,6 +327,7 @@ impl Default for MetallicRoughness {
             sheen_roughness: ScalarInput::constant(0.0),
             clearcoat: ScalarInput::constant(0.0),
             clearcoat_roughness: ScalarInput::constant(0.0),
+            clearcoat_normal: None,
         }
     }
 }

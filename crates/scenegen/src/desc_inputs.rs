@@ -49,26 +49,32 @@ macro_rules! surface_inputs {
                 sheen_roughness,
                 clearcoat,
                 clearcoat_roughness,
-            }) => vec![
-                ("base_color", Color(base_color)),
-                ("metallic", Scalar(metallic)),
-                ("roughness", Scalar(roughness)),
-                ("specular", Scalar(specular)),
-                ("specular_color", Color(specular_color)),
-                ("transmission", Scalar(transmission)),
-                ("diffuse_transmission", Scalar(diffuse_transmission)),
-                (
-                    "diffuse_transmission_color",
-                    Color(diffuse_transmission_color),
-                ),
-                ("anisotropy", Scalar(anisotropy)),
-                ("iridescence", Scalar(iridescence)),
-                ("iridescence_thickness", Scalar(iridescence_thickness)),
-                ("sheen_color", Color(sheen_color)),
-                ("sheen_roughness", Scalar(sheen_roughness)),
-                ("clearcoat", Scalar(clearcoat)),
-                ("clearcoat_roughness", Scalar(clearcoat_roughness)),
-            ],
+                clearcoat_normal,
+            }) => {
+                let mut inputs = vec![
+                    ("base_color", Color(base_color)),
+                    ("metallic", Scalar(metallic)),
+                    ("roughness", Scalar(roughness)),
+                    ("specular", Scalar(specular)),
+                    ("specular_color", Color(specular_color)),
+                    ("transmission", Scalar(transmission)),
+                    ("diffuse_transmission", Scalar(diffuse_transmission)),
+                    (
+                        "diffuse_transmission_color",
+                        Color(diffuse_transmission_color),
+                    ),
+                    ("anisotropy", Scalar(anisotropy)),
+                    ("iridescence", Scalar(iridescence)),
+                    ("iridescence_thickness", Scalar(iridescence_thickness)),
+                    ("sheen_color", Color(sheen_color)),
+                    ("sheen_roughness", Scalar(sheen_roughness)),
+                    ("clearcoat", Scalar(clearcoat)),
+                    ("clearcoat_roughness", Scalar(clearcoat_roughness)),
+                ];
+                let normal = clearcoat_normal.into_iter();
+                inputs.extend(normal.map(|map| ("clearcoat_normal", MaterialInput::Normal(map))));
+                inputs
+            }
             SurfaceDesc::Phong(PhongSurface {
                 diffuse,
                 specular,
@@ -152,6 +158,10 @@ impl MaterialDesc {
             SurfaceDesc::MetallicRoughness(surface) if surface.anisotropy.factor > 0.0 => {
                 let texture = surface.anisotropy.texture.as_ref();
                 Some(texture.map_or(0, |(texture, _)| texture.uv_set))
+            }
+            SurfaceDesc::MetallicRoughness(surface) if surface.clearcoat.factor > 0.0 => {
+                let map = surface.clearcoat_normal.as_ref()?;
+                Some(map.texture.uv_set)
             }
             _ => None,
         }

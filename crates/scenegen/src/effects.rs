@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use residual_render::bsdf::AnyInterface;
 use residual_render::program::{
-    AlphaTestNode, BsdfNode, CameraNode, FresnelNode, ImageNode, Leaf, LightNode, Program,
-    RoughnessNode, Source, SourceNode,
+    AlphaTestNode, BsdfNode, CameraNode, FresnelNode, ImageNode, LayerFrameNode, Leaf, LightNode,
+    Program, RoughnessNode, Source, SourceNode,
 };
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, UvMap};
 
@@ -117,8 +117,15 @@ impl Effects {
 
     fn add_bsdf(&mut self, node: &BsdfNode, place: &str) {
         if let BsdfNode::Coated { coat, base } = node {
+            let (coat, normal) = match &**coat {
+                BsdfNode::OwnNormal { bsdf, normal } => (&**bsdf, Some(normal)),
+                coat => (coat, None),
+            };
+            if let Some(LayerFrameNode::MappedFrame { .. }) = normal {
+                self.add(Effect::NormalMaps, place);
+            }
             self.add(coat_effect(coat, base), place);
-            if let BsdfNode::Glossy { fresnel, roughness } = &**coat {
+            if let BsdfNode::Glossy { fresnel, roughness } = coat {
                 self.add_facets(Some(fresnel), roughness, place);
             }
             return self.add_bsdf(base, place);
@@ -223,7 +230,7 @@ fn bsdf_effects(bsdf: &BsdfNode) -> &'static [Effect] {
         BsdfNode::DiffuseTransmission { .. } => &[Effect::DiffuseTransmission],
         BsdfNode::Glossy { .. } => &[Effect::MetallicReflection],
         BsdfNode::Sheen { .. } => &[Effect::Sheen],
-        BsdfNode::Coated { .. } => &[],
+        BsdfNode::Coated { .. } | BsdfNode::OwnNormal { .. } => &[],
         BsdfNode::Dielectric { interface, .. } => match interface {
             AnyInterface::Solid => &[Effect::Refraction],
             AnyInterface::Thin => &[Effect::ThinTransmission],

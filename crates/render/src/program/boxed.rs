@@ -3,12 +3,13 @@
 use crate::alpha::AlphaTest;
 use crate::bsdf::ggx::Ggx;
 use crate::bsdf::{
-    AnyInterface, Bsdf, BsdfKind, BsdfSample, BsdfValue, Fresnel, Roughness, SchlickCurve,
+    AnyInterface, Bsdf, BsdfKind, BsdfSample, BsdfValue, Fresnel, LayerFrame, Roughness,
+    SchlickCurve,
 };
 use crate::camera::Camera;
 use crate::domain::Domain;
 use crate::light::{Background, LightKind, LightSample};
-use crate::math::{Color, Vec3};
+use crate::math::{Color, Frame, Vec3};
 use crate::surface::{Attributes, PathRay, Surface, SurfaceHit};
 use crate::texture::{
     AnyFilter, AnyFormat, AnyWrap, ColorSource, Image, Input, ScalarSource, UvMap,
@@ -108,6 +109,9 @@ entered!(Bsdf {
 entered!(Fresnel {
     fn reflectance(d, surface: &Surface<D>, cos: D::F) -> Color<D::F>;
     fn curve(d, surface: &Surface<D>, cos: D::F) -> SchlickCurve<D>;
+});
+entered!(LayerFrame {
+    fn frame(d, surface: &Surface<D>, wo: Vec3<D::F>) -> Frame<D::F>;
 });
 entered!(Roughness {
     fn microfacets(d, surface: &Surface<D>) -> Ggx<D::F>;

@@ -3,9 +3,9 @@
 use super::{EmissionNode, NormalNode, Program, SourceNode, TangentNode};
 use crate::bsdf::Bsdf;
 use crate::domain::Domain;
-use crate::material::{Material, Shading, decode_normal, decode_tangent, front_only, medium};
+use crate::material::{Material, Shading, front_only, medium};
 use crate::math::Vec3;
-use crate::surface::{Attributes, MAX_INPUTS, Surface};
+use crate::surface::{Attributes, MAX_INPUTS, Surface, decode_normal, decode_tangent};
 use crate::texture::{ColorSource, ScalarSource};
 
 enum BoxedInput<'a, D: Domain> {

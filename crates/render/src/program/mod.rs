@@ -10,8 +10,8 @@ mod walk;
 pub use interpreted::Interpreted;
 pub use material::BoxedMaterial;
 pub use nodes::{
-    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, FresnelNode, ImageNode, LightNode,
-    Literal, RoughnessNode, ScalarNode,
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, FresnelNode, ImageNode,
+    LayerFrameNode, LightNode, Literal, RoughnessNode, ScalarNode,
 };
 pub use walk::{Leaf, Source};
 

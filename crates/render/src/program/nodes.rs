@@ -7,7 +7,7 @@
 use super::boxed::{Boxing, Entered};
 use super::table::{form, nodes, value};
 use crate::alpha::AlphaTest;
-use crate::bsdf::{AnyInterface, Bsdf, Fresnel, Roughness};
+use crate::bsdf::{AnyInterface, Bsdf, Fresnel, LayerFrame, Roughness};
 use crate::camera::Camera;
 use crate::domain::Domain;
 use crate::light::LightKind;
@@ -24,6 +24,7 @@ nodes! {
         DiffuseTransmission { color: Input },
         Glossy { fresnel: FresnelNode, roughness: RoughnessNode },
         Sheen { color: Input, roughness: Input },
+        OwnNormal { bsdf: Box<BsdfNode>, normal: LayerFrameNode },
         Coated { coat: Box<BsdfNode>, base: Box<BsdfNode> },
         Dielectric { transmittance: Input, ior: Input, interface: AnyInterface },
         RoughDielectric {
@@ -48,6 +49,12 @@ nodes! {
     RoughnessNode: Roughness in bsdf {
         Isotropic { roughness: Input },
         Anisotropic { roughness: Input, anisotropy: Input },
+    }
+
+    /// The shading frame of a layer.
+    LayerFrameNode: LayerFrame in bsdf {
+        MeshFrame,
+        MappedFrame { texel: Input, scale: Input },
     }
 
     /// A source of colours.
@@ -138,6 +145,8 @@ pub enum Field<'a> {
     Fresnel(&'a FresnelNode),
     /// How its facets are turned.
     Roughness(&'a RoughnessNode),
+    /// Its shading frame.
+    LayerFrame(&'a LayerFrameNode),
     /// A source of colours within.
     ColorSource(&'a ColorNode),
     /// A source of numbers within.
@@ -177,6 +186,7 @@ fields! {
     BsdfNode => Bsdf,
     FresnelNode => Fresnel,
     RoughnessNode => Roughness,
+    LayerFrameNode => LayerFrame,
     ColorNode => ColorSource,
     ScalarNode => ScalarSource,
     ImageNode => Image,

@@ -1,7 +1,8 @@
 //! Walks over nodes: what a tree of them is made of, and what it reads.
 
 use super::nodes::{
-    AlphaTestNode, BsdfNode, ColorNode, Field, ImageNode, LightNode, Literal, ScalarNode,
+    AlphaTestNode, BsdfNode, ColorNode, Field, ImageNode, LayerFrameNode, LightNode, Literal,
+    ScalarNode,
 };
 use super::{Program, SourceNode};
 use crate::bsdf::AnyInterface;
@@ -67,6 +68,7 @@ fn leaves(literal: Literal<'_>) -> Vec<Leaf<'_>> {
         | Field::Bsdf(_)
         | Field::Fresnel(_)
         | Field::Roughness(_)
+        | Field::LayerFrame(_)
         | Field::Interface(_)
         | Field::Attributes(_) => Vec::new(),
     });
@@ -151,6 +153,18 @@ impl BsdfNode {
             Field::Bsdf(node) => Some(node),
             _ => None,
         })
+    }
+
+    /// Whether some layer's normals are those of a map.
+    pub fn reads_tangents(&self) -> bool {
+        let is_mapped = matches!(
+            self,
+            Self::OwnNormal {
+                normal: LayerFrameNode::MappedFrame { .. },
+                ..
+            }
+        );
+        is_mapped || self.children().any(Self::reads_tangents)
     }
 
     /// Whether some light passes through the surface.

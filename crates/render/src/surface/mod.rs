@@ -5,12 +5,14 @@ mod offset;
 mod place;
 mod ray;
 mod shading_frame;
+mod texels;
 
 pub use attributes::{
     Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
 };
 pub use offset::offset_point;
 pub use ray::{PathRay, SurfaceHit};
+pub use texels::{decode_normal, decode_tangent};
 
 use attributes::Corners;
 use place::Place;
@@ -35,6 +37,8 @@ pub struct Surface<D: Domain> {
     pub geometric_normal: Vec3<D::F>,
     /// Shading frame; its normal is on the side from which the ray came.
     pub frame: Frame<D::F>,
+    /// The shading frame of the mesh, without what maps change of it.
+    pub mesh_frame: Frame<D::F>,
     /// The ray came from the front (counter-clockwise) side.
     pub front: D::M,
     /// Cosine between the geometric normal and the way back, ≥ 0.
@@ -138,6 +142,7 @@ impl<D: Domain> Surface<D> {
             area: normal.length(d) * d.lit(0.5),
             geometric_normal,
             frame,
+            mesh_frame: frame,
             front,
             cos_geometric: d.abs(cos_outward),
             uv,
@@ -169,6 +174,12 @@ impl<D: Domain> Surface<D> {
     pub fn with_normal(mut self, d: D, local: Vec3<D::F>, wo: Vec3<D::F>) -> Self {
         self.frame = shading_frame::with_normal(d, &self.frame, local, wo);
         self
+    }
+
+    /// The shading frame with a normal that is given in that of the mesh.
+    #[inline(always)]
+    pub fn mapped_frame(&self, d: D, local: Vec3<D::F>, wo: Vec3<D::F>) -> Frame<D::F> {
+        shading_frame::with_normal(d, &self.mesh_frame, local, wo)
     }
 
     /// Turns the tangent to a direction given along tangent and bitangent.

@@ -3,8 +3,8 @@
 use residual_render::bsdf::AnyInterface;
 use residual_render::layer::Layers;
 use residual_render::program::{
-    BsdfNode, CameraNode, ColorNode, FresnelNode, ImageNode, InputNode, LightNode, Program,
-    RoughnessNode, ScalarNode, SourceNode, Structure,
+    BsdfNode, CameraNode, ColorNode, FresnelNode, ImageNode, InputNode, LayerFrameNode, LightNode,
+    Program, RoughnessNode, ScalarNode, SourceNode, Structure,
 };
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
@@ -102,6 +102,14 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         base: Box::new(base.clone()),
     };
     let coated = coat(&conductor, &diffuse);
+    let own = |normal| BsdfNode::OwnNormal {
+        bsdf: Box::new(conductor.clone()),
+        normal,
+    };
+    let mapped = LayerFrameNode::MappedFrame {
+        texel: first,
+        scale: fourth,
+    };
     let sheen = BsdfNode::Sheen {
         color: second,
         roughness: third,
@@ -144,6 +152,8 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         glass(AnyInterface::Thin),
         phong.clone(),
         mirror.clone(),
+        coat(&own(LayerFrameNode::MeshFrame), &conductor),
+        coat(&own(mapped), &conductor),
         brushed,
         sheen.clone(),
         paper.clone(),

@@ -4,13 +4,17 @@ use residual_render::bsdf::AnyInterface;
 use residual_render::program::{BsdfNode, ColorNode, ScalarNode};
 
 use super::program::{Builder, is_black};
-use crate::desc::{ColorInput, PhongSurface, SurfaceDesc};
+use crate::desc::{ColorInput, NormalMap, PhongSurface, SurfaceDesc};
 
 impl Builder<'_> {
-    /// The BSDF of a surface.
-    pub(super) fn bsdf(&mut self, surface: &SurfaceDesc) -> BsdfNode {
+    /// The BSDF of a surface whose normals may be those of a map.
+    pub(super) fn bsdf(
+        &mut self,
+        surface: &SurfaceDesc,
+        normal_map: Option<&NormalMap>,
+    ) -> BsdfNode {
         match surface {
-            SurfaceDesc::MetallicRoughness(surface) => self.metallic_roughness(surface),
+            SurfaceDesc::MetallicRoughness(surface) => self.metallic_roughness(surface, normal_map),
             SurfaceDesc::Phong(surface) => self.phong(surface),
             SurfaceDesc::Mirror {
                 diffuse,

@@ -2,12 +2,12 @@
 
 use residual_render::bsdf::AnyInterface;
 use residual_render::program::{
-    BsdfNode, ColorNode, FresnelNode, RoughnessNode, ScalarNode, TangentNode,
+    BsdfNode, ColorNode, FresnelNode, LayerFrameNode, RoughnessNode, ScalarNode, TangentNode,
 };
 use residual_render::texture::Input;
 
 use super::program::{Builder, is_black};
-use crate::desc::{MetallicRoughness, SurfaceDesc};
+use crate::desc::{MetallicRoughness, NormalMap, SurfaceDesc};
 use crate::effect::Effect;
 
 /// Reflectance at normal incidence of a clear coat, whose index of refraction is 1.5.
@@ -22,10 +22,14 @@ const ONE: ScalarNode = ScalarNode::Const(1.0);
 
 impl Builder<'_> {
     /// The base under its sheen under its clear coat.
-    pub(super) fn metallic_roughness(&mut self, surface: &MetallicRoughness) -> BsdfNode {
+    pub(super) fn metallic_roughness(
+        &mut self,
+        surface: &MetallicRoughness,
+        normal_map: Option<&NormalMap>,
+    ) -> BsdfNode {
         let base = self.base(surface);
         let base = self.under_sheen(surface, base);
-        self.under_clearcoat(surface, base)
+        self.under_clearcoat(surface, base, normal_map)
     }
 
     /// How much rougher the surface is along its tangents; 0 where it has none.
@@ -224,7 +228,12 @@ impl Builder<'_> {
         coated(sheen, base)
     }
 
-    fn under_clearcoat(&mut self, surface: &MetallicRoughness, base: BsdfNode) -> BsdfNode {
+    fn under_clearcoat(
+        &mut self,
+        surface: &MetallicRoughness,
+        base: BsdfNode,
+        normal_map: Option<&NormalMap>,
+    ) -> BsdfNode {
         let strength = self.sources.scalar(&surface.clearcoat);
         if strength == ZERO {
             return base;
@@ -245,7 +254,36 @@ impl Builder<'_> {
                 roughness: self.scalar("clearcoat_roughness", roughness),
             },
         };
-        coated(coat, base)
+        coated(self.with_own_normal(coat, surface, normal_map), base)
+    }
+
+    /// A clear coat with its own normals, if they are not those of the surface under it.
+    fn with_own_normal(
+        &mut self,
+        coat: BsdfNode,
+        surface: &MetallicRoughness,
+        normal_map: Option<&NormalMap>,
+    ) -> BsdfNode {
+        let has_tangents = self.sources.has_tangents();
+        let own = surface.clearcoat_normal.as_ref().filter(|_| has_tangents);
+        if own == normal_map {
+            return coat;
+        }
+        let normal = match own {
+            None => LayerFrameNode::MeshFrame,
+            Some(map) => {
+                let texel = self.sources.linear_texel(&map.texture);
+                let scale = self.sources.number(map.scale);
+                LayerFrameNode::MappedFrame {
+                    texel: self.color("clearcoat_normal_texel", texel),
+                    scale: self.scalar("clearcoat_normal_scale", scale),
+                }
+            }
+        };
+        BsdfNode::OwnNormal {
+            bsdf: Box::new(coat),
+            normal,
+        }
     }
 
     fn fresnel(

@@ -34,13 +34,13 @@ impl Builder<'_> {
             true => self.tangent(&desc.surface),
             false => None,
         };
-        let bsdf = self.bsdf(&desc.surface);
+        let bsdf = self.bsdf(&desc.surface, normal_map);
         let emission = self.emission(desc);
         let inputs = std::mem::take(&mut self.inputs);
         let read = inputs.iter().map(|input| self.sources.read(&input.source));
         let mut attributes = read.fold(Attributes::NONE, Attributes::union);
         attributes.normals |= available.normals;
-        attributes.tangents |= normal.is_some() || is_anisotropic;
+        attributes.tangents |= normal.is_some() || is_anisotropic || bsdf.reads_tangents();
         let alpha_test = match opacity {
             Opacity::Opaque | Opacity::Transparent => None,
             Opacity::Tested => self.alpha_test(desc),

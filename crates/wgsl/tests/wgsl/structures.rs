@@ -4,7 +4,7 @@ use residual_render::bsdf::AnyInterface;
 use residual_render::layer::Layers;
 use residual_render::program::{
     AlphaTestNode, BsdfNode, CameraNode, ColorNode, EmissionNode, FresnelNode, ImageNode,
-    InputNode, LightNode, NormalNode, Program, RoughnessNode, ScalarNode, SourceNode, Structure,
+    InputNode, LayerFrameNode, LightNode, NormalNode, Program, RoughnessNode, ScalarNode, SourceNode, Structure,
 };
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
@@ -85,6 +85,14 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         base: Box::new(base.clone()),
     };
     let coated = coat(&conductor, &diffuse);
+    let own = |normal| BsdfNode::OwnNormal {
+        bsdf: Box::new(conductor.clone()),
+        normal,
+    };
+    let mapped = LayerFrameNode::MappedFrame {
+        texel: first,
+        scale: fourth,
+    };
     let sheen = BsdfNode::Sheen {
         color: second,
         roughness: third,
@@ -114,6 +122,8 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         diffuse.clone(),
         conductor.clone(),
         coated.clone(),
+        coat(&own(LayerFrameNode::MeshFrame), &conductor),
+        coat(&own(mapped), &conductor),
         brushed,
         coat(&sheen, &coated),
         paper,

@@ -97,7 +97,7 @@ fn implementation(out: &mut Module, program: &Program, images: &Images<'_>) -> f
         writeln!(out, "            {bound}")?;
     }
     if let Some(normal) = program.normal {
-        out.import("material", &["decode_normal"]);
+        out.import("surface", &["decode_normal"]);
         let [texel, scale] = [normal.texel, normal.scale].map(|input| &names[input.0]);
         writeln!(
             out,
@@ -116,7 +116,7 @@ fn implementation(out: &mut Module, program: &Program, images: &Images<'_>) -> f
             Code::word(format!("{texel}.0")),
             Code::word(format!("[{cos}.0, {sin}.0]")),
         ];
-        let tangent = Code::call(Name::of("material", "decode_tangent"), arguments);
+        let tangent = Code::call(Name::of("surface", "decode_tangent"), arguments);
         let tangent = out.bind("tangent", &tangent, 12);
         writeln!(out, "            {tangent}")?;
         writeln!(

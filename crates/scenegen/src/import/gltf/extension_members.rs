@@ -3,11 +3,12 @@
 use std::ops::RangeInclusive;
 
 use gltf::json::deserialize;
+use gltf::json::material::NormalTexture;
 use gltf::json::texture::Info;
 use serde_json::{Map, Value};
 
 use super::members::Members;
-use crate::desc::{ColorInput, ScalarInput, TextureUse};
+use crate::desc::{ColorInput, NormalMap, ScalarInput, TextureUse};
 use crate::import::error::Fault;
 
 /// The members of an extension of a material.
@@ -25,11 +26,6 @@ impl<'a> ExtensionMembers<'a> {
     pub(super) fn of(extensions: &'a Map<String, Value>, name: &'static str) -> Option<Self> {
         let content = extensions.get(name)?.as_object()?;
         Some(Self { name, content })
-    }
-
-    /// Whether there is such a member.
-    pub(super) fn has(&self, member: &str) -> bool {
-        self.content.contains_key(member)
     }
 
     /// A number.
@@ -91,6 +87,22 @@ impl<'a> ExtensionMembers<'a> {
         })
     }
 
+    /// A normal map.
+    pub(super) fn normal_map(
+        &self,
+        members: &mut Members<'_, '_>,
+        member: &str,
+    ) -> Result<Option<NormalMap>, Fault> {
+        let Some(json) = self.content.get(member) else {
+            return Ok(None);
+        };
+        let texture: NormalTexture = deserialize::from_value(json.clone())
+            .map_err(|error| self.fault(members, member, &error))?;
+        let scale = members.number(member, texture.scale, f32::MIN..=f32::MAX, 1.0);
+        let texture = members.normal_texture(member, &texture)?;
+        Ok(texture.map(|texture| NormalMap { texture, scale }))
+    }
+
     fn texture(
         &self,
         members: &mut Members<'_, '_>,
@@ -99,10 +111,13 @@ impl<'a> ExtensionMembers<'a> {
         let Some(json) = self.content.get(member) else {
             return Ok(None);
         };
-        let info: Info = deserialize::from_value(json.clone()).map_err(|error| {
-            let place = format!("{}/extensions/{}/{member}", members.place, self.name);
-            Fault::new(place, error.to_string())
-        })?;
+        let info: Info = deserialize::from_value(json.clone())
+            .map_err(|error| self.fault(members, member, &error))?;
         members.texture(member, Some(&info))
+    }
+
+    fn fault(&self, members: &Members<'_, '_>, member: &str, error: &serde_json::Error) -> Fault {
+        let place = format!("{}/extensions/{}/{member}", members.place, self.name);
+        Fault::new(place, error.to_string())
     }
 }

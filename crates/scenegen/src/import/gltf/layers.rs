@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::extension_members::ExtensionMembers;
 use super::members::Members;
-use crate::desc::{MetallicRoughness, ScalarInput};
+use crate::desc::MetallicRoughness;
 use crate::effect::Effect;
 use crate::import::error::Fault;
 
@@ -89,13 +89,7 @@ pub(super) fn read(
             (0.0..=1.0, 0.0),
             1,
         )?;
-        if surface.clearcoat != ScalarInput::constant(0.0)
-            && extension.has("clearcoatNormalTexture")
-        {
-            members.warn(
-                "clearcoatNormalTexture is not rendered; the coat has the normals of the surface",
-            );
-        }
+        surface.clearcoat_normal = extension.normal_map(members, "clearcoatNormalTexture")?;
     }
     dismiss_without_effect(&surface, extensions, members);
     Ok(surface)
