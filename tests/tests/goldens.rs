@@ -41,6 +41,7 @@ goldens! {
     clamp_wrap
     constants
     culling
+    depth_of_field
     diffuse_and_mirror
     diffuse_and_phong
     directional_light
@@ -62,6 +63,7 @@ goldens! {
     normal_map
     odd_names
     orthographic_camera
+    panorama
     paper
     phong
     prism

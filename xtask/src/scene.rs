@@ -79,6 +79,7 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             SpecializeArg::Constants => Binding::Constants,
         },
         camera,
+        optics: args.optics(),
         size: args.size.0,
         culling: match args.culling {
             CullingArg::Gltf => CullingRule::Gltf,
