@@ -154,7 +154,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_enum, default_value_t = ViewArg::Normals)]
     pub(crate) view: ViewArg,
     /// Layers of an EXR beside radiance, with commas between them: albedo, normal, depth, position, object_index,
-    /// material_index, sample_count, variance, standard_error
+    /// material_index, sample_count, variance, standard_error; crypto_object and crypto_material, ids of names (Cryptomatte)
     #[arg(long, value_name = "LAYER", value_delimiter = ',')]
     pub(crate) aov: Vec<Layer>,
     /// When a material's numbers are known to the compiler

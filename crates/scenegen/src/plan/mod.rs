@@ -142,7 +142,12 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             ),
         });
     }
-    if options.layers.has(Layer::MaterialIndex) {
+    let of_objects = [
+        Layer::MaterialIndex,
+        Layer::CryptoObject,
+        Layer::CryptoMaterial,
+    ];
+    if of_objects.iter().any(|&layer| options.layers.has(layer)) {
         plan.pack_objects();
     }
     Ok(plan)
