@@ -2,7 +2,7 @@
 //!
 //! Pixels are kept tile by tile, so that a device's threads each own the tiles they render and share nothing. Beside
 //! radiance a film has the [`Layers`] that it was made for; what is kept of each is said by its
-//! [`Reduction`].
+//! [`Reduction`](crate::layer::Reduction).
 
 mod adaptive;
 mod estimates;
