@@ -10,7 +10,7 @@ use residual_scenegen::desc::{
     SurfaceDesc, TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
-use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
+use residual_scenegen::plan::{Aperture, Binding, Focus, Optics, Plan, PlanOptions, plan};
 
 use crate::fixtures::{
     Builder, color, glass, material, matte, metallic_roughness, scalar, sheet, sphere,
@@ -818,6 +818,14 @@ fn views() -> Vec<Tiny> {
         camera(&mut b, Projection::Orthographic { ymag: 0.9 });
         b.finish()
     };
+    // Near the walls, which fill half of what is around.
+    let within = {
+        let mut b = Builder::new("");
+        b.add(gray(), corner());
+        lamp(&mut b);
+        b.camera("camera", [0.2, 0.1, 0.4], [0.0, -0.1, 0.0], PERSPECTIVE);
+        b.finish()
+    };
     let named = |name: &str| {
         let gray = MaterialDesc {
             name: name.to_owned(),
@@ -843,6 +851,29 @@ fn views() -> Vec<Tiny> {
             &[Effect::OrthographicCamera],
             &[Effect::PerspectiveCamera],
             orthographic,
+        ),
+        plain_options(
+            Tiny::new(
+                "depth_of_field",
+                &[Effect::DepthOfField],
+                &[Effect::PerspectiveCamera],
+                scene(gray(), corner()),
+            ),
+            |options| {
+                options.optics = Optics::ThinLens {
+                    aperture: Aperture::Diameter(0.3),
+                    focus: Focus::Distance(2.5),
+                }
+            },
+        ),
+        plain_options(
+            Tiny::new(
+                "panorama",
+                &[Effect::PanoramicCamera],
+                &[Effect::PerspectiveCamera],
+                within,
+            ),
+            |options| options.optics = Optics::Panorama,
         ),
         plain_options(
             Tiny::new("constants", &[Effect::DielectricCoat], &[], constants),

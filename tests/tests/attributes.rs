@@ -1,6 +1,7 @@
 //! Vertices are stored for those materials only that read them, and each triangle finds its own.
 
 use glam::{Affine3A, Mat3, Vec3, Vec4};
+use residual_render::cryptomatte;
 use residual_render::domain::Buffer;
 use residual_render::layer::{Layer, Layers};
 use residual_render::record::IndexedRecord;
@@ -301,10 +302,15 @@ fn triangles_know_their_objects() {
     let asked_for = residual_scenegen::plan::plan(&scene, &options).unwrap();
     let stored: Vec<ObjectRecord> = asked_for.data.records().collect();
     let material = |mesh: usize| scene.meshes[mesh].material as u32;
-    let material = |&mesh: &usize| ObjectRecord {
+    let record = |(index, &mesh): (usize, &usize)| ObjectRecord {
         material: material(mesh),
+        name_id: cryptomatte::id(&format!("node {index}")),
+        material_name_id: cryptomatte::id(&scene.materials[scene.meshes[mesh].material].name),
     };
-    assert_eq!(stored, PLACED.iter().map(material).collect::<Vec<_>>());
+    assert_eq!(
+        stored,
+        PLACED.iter().enumerate().map(record).collect::<Vec<_>>()
+    );
 }
 
 /// Where nobody reads anything there are no vertices, not even their numbers.

@@ -166,11 +166,13 @@ fn cube() -> Vec<Triangle> {
 fn camera(eye: [f32; 3], half: f32, forward: [f32; 3]) -> CameraRecord {
     CameraRecord {
         eye: eye.into(),
+        lens_radius: 0.0,
         right: [half, 0.0, 0.0].into(),
         frame_width: 0.0,
         up: [0.0, half, 0.0].into(),
         frame_height: half,
         forward: forward.into(),
+        focus_distance: 0.0,
     }
 }
 

@@ -62,7 +62,7 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("Dispersive {", &[Effect::Dispersion]),
     ("Phong {", &[Effect::PhongReflection]),
     ("Mirror {", &[Effect::MirrorReflection]),
-    ("Thin", &[Effect::ThinTransmission]),
+    ("interface: Thin", &[Effect::ThinTransmission]),
     ("Solid", &[Effect::Refraction]),
     ("Area<", &[Effect::EmittingSurfaces]),
     ("emission: Some", &[Effect::EmittingSurfaces]),
@@ -71,7 +71,9 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("(Directional, ", &[Effect::DirectionalLights]),
     ("(Environment, ", &[Effect::Environment]),
     ("Perspective", &[Effect::PerspectiveCamera]),
+    ("ThinLens", &[Effect::DepthOfField]),
     ("Orthographic", &[Effect::OrthographicCamera]),
+    ("Panorama", &[Effect::PanoramicCamera]),
 ];
 
 /// Source files of renderers, and the effects that alone call for them.

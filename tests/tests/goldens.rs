@@ -42,6 +42,7 @@ goldens! {
     clamp_wrap
     constants
     culling
+    depth_of_field
     diffuse_and_mirror
     diffuse_and_phong
     directional_light
@@ -63,6 +64,7 @@ goldens! {
     normal_map
     odd_names
     orthographic_camera
+    panorama
     paper
     phong
     prism

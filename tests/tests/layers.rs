@@ -1,6 +1,7 @@
 //! Layers of an image: what they hold is what is in the scene, and radiance does not depend on them.
 
 use residual_device_cpu::LaneCount;
+use residual_render::cryptomatte;
 use residual_render::film::Film;
 use residual_render::layer::{FAR, Layer, Layers};
 use residual_scenegen::desc::{Projection, SceneDesc};
@@ -88,6 +89,60 @@ fn layers_hold_what_is_there() {
             [1.0, 2.0, 0.0]
         );
     }
+}
+
+/// Coverage is the part of a pixel that a surface fills: of an edge through its middle, half; samples lie in strata. What is
+/// not covered is nothing's.
+#[test]
+fn cryptomattes_hold_parts_of_pixels() {
+    let samples = 256;
+    let film = render(&squares(), all(), samples);
+    for (layer, names) in [
+        (Layer::CryptoObject, ["node 0", "node 1"]),
+        (Layer::CryptoMaterial, ["red", "grey"]),
+    ] {
+        let channels = film.layer(layer).unwrap();
+        let ranks = |place: [f32; 2]| {
+            let pixel = index(place);
+            [0, 2, 4].map(|k| [channels[k][pixel], channels[k + 1][pixel]])
+        };
+        let [left, right] = names.map(cryptomatte::id);
+        assert_eq!(ranks(LEFT), [[left, 1.0], [0.0; 2], [0.0; 2]]);
+        assert_eq!(ranks(RIGHT), [[right, 1.0], [0.0; 2], [0.0; 2]]);
+        assert_eq!(
+            ranks(NOWHERE),
+            [[cryptomatte::NOTHING, 1.0], [0.0; 2], [0.0; 2]]
+        );
+        for pixel in 0..(SIZE[0] * SIZE[1]) as usize {
+            let parts = channels.iter().skip(1).step_by(2);
+            let sum: f32 = parts.map(|parts| parts[pixel]).sum();
+            assert_eq!(sum, 1.0, "{layer}");
+        }
+        // Pixels are a tenth wide: the first square, half a tenth to the right, ends in the middle of one.
+        let mut moved = squares();
+        let first = moved.meshes[0].positions.iter_mut();
+        first.for_each(|position| position.x += 0.05);
+        let film = render(&moved, all(), samples);
+        let channels = film.layer(layer).unwrap();
+        let pixel = index([-0.45, 0.05]);
+        let mut found = [0, 2].map(|k| [channels[k][pixel], channels[k + 1][pixel]]);
+        found.sort_by_key(|[id, _]| *id == cryptomatte::NOTHING);
+        assert_eq!(found.map(|[id, _]| id), [left, cryptomatte::NOTHING]);
+        for [_, part] in found {
+            assert!((part - 0.5).abs() < 0.01, "{part}");
+        }
+    }
+}
+
+/// Names that are the same have one id: their parts are added.
+#[test]
+fn objects_of_one_name_are_one_in_a_cryptomatte() {
+    let mut scene = squares();
+    scene.instances[1].name = scene.instances[0].name.clone();
+    let film = render(&scene, Layers::NONE.with(Layer::CryptoObject), 4);
+    let id = film.channel(Layer::CryptoObject, 0).unwrap();
+    assert_eq!(id[index(LEFT)], id[index(RIGHT)]);
+    assert_ne!(id[index(LEFT)], id[index(NOWHERE)]);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand};
 use residual_device_cpu::LaneCount;
 use residual_frontend::options::Size;
 use residual_render::layer::{Layer, Layers};
+use residual_scenegen::plan::{Aperture, Focus, Optics};
 
 use crate::choices::{
     CullingArg, DeviceArg, LightsArg, MappingArg, MisArg, SamplerArg, SpecializeArg, StudioArg,
@@ -110,6 +111,27 @@ pub(crate) struct SceneArgs {
     /// Vertical field of view
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = field_of_view)]
     pub(crate) fov: Option<f32>,
+    /// Depth of field: how far the lens is open, as an f-number of 35 mm film for scenes in metres, or as its diameter in
+    /// units of the scene
+    #[arg(
+        long,
+        value_name = "f/N|DIAMETER",
+        allow_negative_numbers = true,
+        conflicts_with = "panorama"
+    )]
+    pub(crate) aperture: Option<Aperture>,
+    /// Distance at which all is sharp, in units of the scene; auto: that of what is in the middle of the image
+    #[arg(
+        long,
+        value_name = "DISTANCE|auto",
+        default_value = "auto",
+        requires = "aperture",
+        allow_negative_numbers = true
+    )]
+    pub(crate) focus: Focus,
+    /// All directions around the eye, as a latitude-longitude image; best twice as wide as high
+    #[arg(long, conflicts_with = "fov")]
+    pub(crate) panorama: bool,
     /// Width and height of the image in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     pub(crate) size: Size,
@@ -132,7 +154,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_enum, default_value_t = ViewArg::Normals)]
     pub(crate) view: ViewArg,
     /// Layers of an EXR beside radiance, with commas between them: albedo, normal, depth, position, object_index,
-    /// material_index, sample_count, variance, standard_error
+    /// material_index, sample_count, variance, standard_error; crypto_object and crypto_material, ids of names (Cryptomatte)
     #[arg(long, value_name = "LAYER", value_delimiter = ',')]
     pub(crate) aov: Vec<Layer>,
     /// When a material's numbers are known to the compiler
@@ -141,6 +163,16 @@ pub(crate) struct SceneArgs {
 }
 
 impl SceneArgs {
+    /// What is put before the camera's eye.
+    pub(crate) fn optics(&self) -> Optics {
+        let focus = self.focus;
+        match self.aperture {
+            Some(aperture) => Optics::ThinLens { aperture, focus },
+            None if self.panorama => Optics::Panorama,
+            None => Optics::Projection,
+        }
+    }
+
     /// The layers of the image.
     pub(crate) fn layers(&self) -> Layers {
         self.aov.iter().copied().collect()

@@ -32,6 +32,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         SpecializeArg::Structure | SpecializeArg::Constants => args.tier,
     };
 
+    let manifests = scene::manifests(&plan);
     let tiers = Tiers::new(&plan, lanes);
     let ledger = Ledger::default();
     let mut bvh_time = Duration::ZERO;
@@ -55,9 +56,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             traversal: &bvh,
         };
         let rendered = session.render(
-            &plan.name,
+            scene::subject(&plan, &manifests),
             &options,
-            plan.structure.layers,
             |film, pass| {
                 let renderer = tiers.choose(&ledger);
                 Ok::<_, Infallible>(device.pass(renderer, &view, &options, film, pass))

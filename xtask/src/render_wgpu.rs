@@ -59,6 +59,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         MappingArg::Wavefront => Mapping::Wavefront,
         MappingArg::Megakernel => Mapping::Megakernel,
     };
+    let manifests = scene::manifests(&plan);
     let driver = GpuDriver::new(&gpu, probe, &plan, &bvh, mapping);
     let (rendered, report) = std::thread::scope(|scope| {
         let compilation = scope.spawn(|| driver.compile(options.size));
@@ -67,9 +68,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         }
         let mut passes = GpuPasses::new(&driver, &cpu, lanes, &options);
         let rendered = session.render(
-            &plan.name,
+            scene::subject(&plan, &manifests),
             &options,
-            plan.structure.layers,
             |film, pass| passes.pass(film, pass),
             |_| (),
         )?;

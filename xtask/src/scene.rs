@@ -3,7 +3,9 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
+use residual_frontend::cryptomatte::Manifest;
 use residual_frontend::note;
+use residual_frontend::session::Subject;
 use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
@@ -25,6 +27,25 @@ pub(crate) fn summary(plan: &Plan) -> SceneSummary {
         effects: Effects::of(plan).iter().map(|e| e.to_string()).collect(),
         bytes: plan.data.memory_bytes(),
         is_bounded: plan.structure.tracer.is_bounded(),
+    }
+}
+
+/// The names behind the ids of a plan's Cryptomatte layers.
+pub(crate) fn manifests(plan: &Plan) -> Vec<Manifest> {
+    let layers = plan.structure.layers.iter();
+    let manifests = layers.filter_map(|layer| {
+        let names = plan.names(layer)?.into_iter().map(str::to_owned).collect();
+        Some(Manifest { layer, names })
+    });
+    manifests.collect()
+}
+
+/// What a session renders of a plan.
+pub(crate) fn subject<'a>(plan: &'a Plan, manifests: &'a [Manifest]) -> Subject<'a> {
+    Subject {
+        name: &plan.name,
+        layers: plan.structure.layers,
+        manifests,
     }
 }
 
@@ -79,6 +100,7 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             SpecializeArg::Constants => Binding::Constants,
         },
         camera,
+        optics: args.optics(),
         size: args.size.0,
         culling: match args.culling {
             CullingArg::Gltf => CullingRule::Gltf,

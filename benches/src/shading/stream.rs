@@ -100,11 +100,13 @@ pub(super) fn data(params_of_programs: &[Vec<u32>]) -> SceneData {
     set_lights(&mut data, [[0.5, 0.7, 2.0], [0.5, 0.7, -2.0]]);
     data.push(CameraRecord {
         eye: [0.0, 0.0, 3.0].into(),
+        lens_radius: 0.0,
         right: [1.0, 0.0, 0.0].into(),
         frame_width: 0.0,
         up: [0.0, 1.0, 0.0].into(),
         frame_height: 1.0,
         forward: [0.0, 0.0, -2.0].into(),
+        focus_distance: 0.0,
     });
     data
 }

@@ -90,9 +90,18 @@ fn keep_for_now(data: &[u8]) -> Result<NamedTempFile> {
 /// The emitted code: the scene, and its renderer.
 fn source(plan: &Plan, size: &[u32; 2], lanes: &str, data: &Path) -> String {
     let effects: Vec<_> = Effects::of(plan).iter().map(|e| e.to_string()).collect();
+    let manifests: String = plan
+        .structure
+        .layers
+        .iter()
+        .filter_map(|layer| {
+            let names: Vec<_> = plan.names(layer)?.into_iter().collect();
+            Some(format!("({:?}, &{names:?}), ", layer.name()))
+        })
+        .collect();
     format!(
         "{}\npub(crate) const SCENE: Option<crate::StandaloneScene> = Some(crate::StandaloneScene {{\n    \
-         name: {:?},\n    size: {size:?},\n    reach: {:?},\n    programs: {},\n    is_bounded: {},\n    effects: &{effects:?},\n    \
+         name: {:?},\n    size: {size:?},\n    reach: {:?},\n    programs: {},\n    is_bounded: {},\n    effects: &{effects:?},\n    manifests: &[{manifests}],\n    \
          data: include_bytes!({data:?}),\n    renderer: &Compiled,\n    lanes: Compiled::LANES,\n}});\n",
         rust::module(plan, lanes),
         plan.name,

@@ -1,9 +1,10 @@
 //! What every program that renders shares, be it the command line or the renderer of a single scene: [`options`], a
 //! [`session`] with progress, interruption and images on the way, [statistics](stats), the [precision] reached, and image files
-//! ([`output`], [`input`], and [`pictures`] of numbers), and lines on the [`console`].
+//! ([`output`] with [`cryptomatte`], [`input`], and [`pictures`] of numbers), and lines on the [`console`].
 
 mod clock;
 pub mod console;
+pub mod cryptomatte;
 pub mod display;
 pub mod input;
 pub mod options;

@@ -9,6 +9,7 @@ use residual_accuracy::{ErrorEstimate, Interval};
 use residual_render::film::Film;
 use residual_render::layer::Layers;
 
+use crate::cryptomatte::Manifest;
 use crate::display::Display;
 
 /// What is written beside the pixels.
@@ -21,6 +22,8 @@ pub struct Metadata {
     pub seconds: f64,
     /// The error of these samples.
     pub error: Option<ErrorEstimate>,
+    /// Of its Cryptomatte layers.
+    pub manifests: Vec<Manifest>,
 }
 
 /// Formats that are written.
@@ -185,8 +188,7 @@ fn open_exr(film: &Film, metadata: &Metadata) -> Result<Vec<u8>> {
     let mut channels: SmallVec<[_; 4]> = radiance.collect();
     for layer in film.layers().iter() {
         let values = film.layer(layer).expect("the film has its layers");
-        for (channel, values) in layer.channels().iter().zip(values) {
-            let name = format!("{layer}.{channel}");
+        for (name, values) in layer.channel_names().zip(values) {
             channels.push(AnyChannel::new(name.as_str(), FlatSamples::F32(values)));
         }
     }
@@ -206,6 +208,12 @@ fn open_exr(film: &Film, metadata: &Metadata) -> Result<Vec<u8>> {
         }
     }
     attributes.comments = Text::new_or_none(&comment);
+    for (name, value) in metadata.manifests.iter().flat_map(Manifest::attributes) {
+        // Cryptomatte has UTF-8 here, of which the library's checked constructors know nothing.
+        let [name, value] =
+            [name, value].map(|text| Text::from_bytes_unchecked(text.bytes().collect()));
+        attributes.other.insert(name, AttributeValue::Text(value));
+    }
     let channels = AnyChannels::sort(channels);
     let layer = exr::prelude::Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
     let mut bytes = Cursor::new(Vec::new());
@@ -233,6 +241,7 @@ mod tests {
             samples: 1,
             seconds: 1.0,
             error: None,
+            manifests: Vec::new(),
         };
         let png = directory.path().join("a.png");
         write(&png, &film(), Display::default(), &metadata).unwrap();
@@ -269,6 +278,7 @@ mod tests {
             samples: 1,
             seconds: 1.0,
             error: None,
+            manifests: Vec::new(),
         };
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.exr");
@@ -295,6 +305,53 @@ mod tests {
         ];
         let expected = expected.map(|(name, values)| (name.to_owned(), values.to_vec()));
         assert_eq!(channels, expected);
+    }
+
+    #[test]
+    fn cryptomattes_are_numbered_layers_with_a_manifest() {
+        let layers = Layers::NONE.with(Layer::CryptoObject);
+        let id = residual_render::cryptomatte::id("равнина");
+        let mut film = Film::new(1, 1, 64, layers);
+        film.tiles_mut()[0].add(&[0.0, 0.0, 0.0, id, 0.0, 0.0, 0.0, 0.0]);
+        let manifest = Manifest {
+            layer: Layer::CryptoObject,
+            names: vec!["равнина".to_owned()],
+        };
+        let metadata = Metadata {
+            scene: "s".into(),
+            samples: 2,
+            seconds: 1.0,
+            error: None,
+            manifests: vec![manifest.clone()],
+        };
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.exr");
+        write(&path, &film, Display::default(), &metadata).unwrap();
+        let image = read_first_flat_layer_from_file(&path).unwrap();
+        for (name, value) in manifest.attributes() {
+            let name = Text::new_or_panic(name);
+            let found = &image.layer_data.attributes.other[&name];
+            let AttributeValue::Text(found) = found else {
+                panic!("{name}: {found:?}")
+            };
+            assert_eq!(std::str::from_utf8(found.as_slice()), Ok(&*value));
+        }
+        let channels = image.layer_data.channel_data.list.iter();
+        let of_layer = channels.filter(|channel| channel.name.to_string().starts_with("crypto"));
+        let found: Vec<_> = of_layer
+            .map(|channel| {
+                let value = channel.sample_data.values_as_f32().next().unwrap();
+                (channel.name.to_string(), value)
+            })
+            .collect();
+        let ids = ["00", "01", "02"].into_iter().flat_map(|number| {
+            ["A", "B", "G", "R"].map(|channel| format!("crypto_object{number}.{channel}"))
+        });
+        let values = [0.5, id, 0.5, 0.0].into_iter().chain([0.0; 8]);
+        // Equal parts are ranked by the bits of their ids; that of nothing is the smallest.
+        let values = values.collect::<Vec<_>>();
+        let expected: Vec<_> = ids.zip(values).collect();
+        assert_eq!(found, expected);
     }
 
     #[test]

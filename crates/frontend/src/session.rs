@@ -13,6 +13,7 @@ use residual_render::film::{Film, TILE_SIZE};
 use residual_render::layer::Layers;
 use residual_render::passes::{Counters, Pass, Progress, RenderOptions, render_passes};
 
+use crate::cryptomatte::Manifest;
 use crate::options::{RenderArgs, StatsFormat};
 use crate::output::{self, Format, Metadata};
 use crate::precision;
@@ -24,6 +25,17 @@ use crate::{note, out};
 
 /// Images on the way are written no more often than that so large a part of the time goes into them.
 const PART_FOR_IMAGES: f64 = 0.02;
+
+/// What is rendered.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    /// The scene's name.
+    pub name: &'a str,
+    /// What is kept beside radiance.
+    pub layers: Layers,
+    /// The names behind the ids of its Cryptomatte layers.
+    pub manifests: &'a [Manifest],
+}
 
 /// What is set up before a scene is even loaded, so that mistakes show at once.
 pub struct Session<'a> {
@@ -58,16 +70,15 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Renders a film with these layers, showing progress, and writes the images: after the first pass, from time to
+    /// Renders a film, showing progress, and writes the images: after the first pass, from time to
     /// time, and at the end. `pass` adds a pass of samples; `after_pass` is called after each.
     ///
     /// # Errors
     /// If a pass fails or an image cannot be written. When a pass fails, the images are what there was before.
     pub fn render<E: Into<anyhow::Error>>(
         &self,
-        scene: &str,
+        subject: Subject<'_>,
         options: &RenderOptions,
-        layers: Layers,
         pass: impl FnMut(&mut Film, Pass) -> Result<Counters, E>,
         mut after_pass: impl FnMut(&Progress<'_>),
     ) -> Result<Rendered> {
@@ -81,9 +92,12 @@ impl<'a> Session<'a> {
             let is_last = options.samples == Some(progress.samples);
             if !is_last && progress.elapsed >= next_image {
                 let start = Instant::now();
-                if let Err(error) =
-                    self.write(scene, progress.film, progress.elapsed, progress.convergence)
-                {
+                if let Err(error) = self.write(
+                    subject,
+                    progress.film,
+                    progress.elapsed,
+                    progress.convergence,
+                ) {
                     failed = Some(error);
                     return ControlFlow::Break(());
                 }
@@ -97,7 +111,7 @@ impl<'a> Session<'a> {
             }
         };
         let before = process_time();
-        let film = Film::sampled_by(options.sampling, options.size, TILE_SIZE, layers);
+        let film = Film::sampled_by(options.sampling, options.size, TILE_SIZE, subject.layers);
         let mut film = film.with_second_set(options.seed);
         let (report, outcome) = render_passes(options, &mut film, pass, show);
         let cpu = process_time() - before;
@@ -110,7 +124,7 @@ impl<'a> Session<'a> {
             // What there is stays, whatever comes of the rest.
             return Err(match film.samples() {
                 0 => error,
-                samples => match self.write(scene, &film, report.elapsed, &report.convergence) {
+                samples => match self.write(subject, &film, report.elapsed, &report.convergence) {
                     Ok(()) => error.context(format!(
                         "rendering ended early; the image has {samples} samples per pixel"
                     )),
@@ -118,7 +132,7 @@ impl<'a> Session<'a> {
                 },
             });
         }
-        self.write(scene, &film, report.elapsed, &report.convergence)?;
+        self.write(subject, &film, report.elapsed, &report.convergence)?;
         let first_image = first_image.unwrap_or_else(|| self.start.elapsed());
         Ok(Rendered {
             film,
@@ -130,17 +144,18 @@ impl<'a> Session<'a> {
 
     fn write(
         &self,
-        scene: &str,
+        subject: Subject<'_>,
         film: &Film,
         elapsed: Duration,
         convergence: &Convergence,
     ) -> Result<()> {
         let of_these = |last: &&Measured| last.samples == film.samples();
         let metadata = Metadata {
-            scene: scene.to_owned(),
+            scene: subject.name.to_owned(),
             samples: film.samples(),
             seconds: elapsed.as_secs_f64(),
             error: convergence.last().filter(of_these).map(|last| last.error),
+            manifests: subject.manifests.to_vec(),
         };
         self.outputs
             .iter()

@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use anyhow::bail;
 use residual_frontend::display::ToneMap;
 use residual_frontend::options::RenderArgs;
-use residual_frontend::session::Session;
+use residual_frontend::session::{Session, Subject};
 use residual_render::film::Film;
 use residual_render::layer::Layers;
 use residual_render::passes::{Counters, Pass};
@@ -42,7 +42,12 @@ fn what_there_was_before_is_written_and_the_failure_told() {
         film.tiles_mut()[0].add(&samples);
         Ok(Counters::default())
     };
-    let rendered = session.render("scene", &options, Layers::NONE, pass, |_| ());
+    let subject = Subject {
+        name: "scene",
+        layers: Layers::NONE,
+        manifests: &[],
+    };
+    let rendered = session.render(subject, &options, pass, |_| ());
     let error = format!("{:#}", rendered.err().expect("a failure"));
     assert!(error.contains("the device was lost"), "{error}");
     assert!(error.contains("1 samples per pixel"), "{error}");

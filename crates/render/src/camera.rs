@@ -2,22 +2,33 @@
 
 use crate::domain::Domain;
 use crate::math::Vec3;
+use crate::math::elementary::sincos_turns;
+use crate::math::warp::disc;
 use crate::record::record;
 use crate::scene_data::SceneData;
 use crate::surface::PathRay;
 
 /// A camera: turns points of the film into rays.
 pub trait Camera<D: Domain> {
-    /// The ray through film coordinates in [−1, 1], x to the right, y up. Its direction is a unit vector.
-    fn ray(&self, d: D, film: [D::F; 2]) -> PathRay<D>;
+    /// The ray through film coordinates in [−1, 1], x to the right, y up. Its direction is a unit vector. `lens` are two
+    /// random numbers in [0, 1) where the camera [has a lens](Camera::has_lens).
+    fn ray(&self, d: D, film: [D::F; 2], lens: [D::F; 2]) -> PathRay<D>;
+
+    /// Whether rays pass through different points of a lens: others need no random numbers for it.
+    #[inline(always)]
+    fn has_lens(&self) -> bool {
+        false
+    }
 }
 
 record! {
     /// Where the camera is and what it sees, world space.
     pub struct CameraRecord in Camera {
         row {
-            /// The eye; for parallel rays, the film's centre.
+            /// The eye, or the middle of the lens; for parallel rays, the film's centre.
             eye: vector,
+            /// Radius of the lens; 0 without one.
+            lens_radius: real,
         }
         row {
             /// From the film's centre to the middle of its right edge.
@@ -33,8 +44,11 @@ record! {
             frame_height: real,
         }
         row {
-            /// From the eye to the film's centre; for parallel rays, the direction of view, of any length.
+            /// From the eye to the film's centre; for parallel rays, the direction of view, of any length. Behind a lens, and
+            /// where rays go everywhere, of length 1.
             forward: vector,
+            /// Distance from the lens to the plane in which all is sharp; 0 without a lens.
+            focus_distance: real,
         }
     }
 }
@@ -50,25 +64,66 @@ impl<D: Domain> CameraRecord<D> {
 /// A pinhole.
 #[derive(Clone, Copy, Debug)]
 pub struct Perspective;
+/// A thin lens with a round opening, evenly bright: what is not in its plane of focus is blurred (PBRT 4, 5.2.3).
+#[derive(Clone, Copy, Debug)]
+pub struct ThinLens;
 /// Parallel rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Orthographic;
+/// All directions, as a latitude-longitude image: the direction of view is in its middle, up at its top edge, and what is
+/// behind the eye at its left and right.
+#[derive(Clone, Copy, Debug)]
+pub struct Panorama;
 
 impl<D: Domain> Camera<D> for Perspective {
     #[inline(always)]
-    fn ray(&self, d: D, film: [D::F; 2]) -> PathRay<D> {
+    fn ray(&self, d: D, film: [D::F; 2], _: [D::F; 2]) -> PathRay<D> {
         let camera = CameraRecord::uniform(d);
         let dir = (camera.forward + camera.on_film(film)).normalize(d);
         PathRay::unbounded(d, camera.eye, dir)
     }
 }
 
+impl<D: Domain> Camera<D> for ThinLens {
+    #[inline(always)]
+    fn ray(&self, d: D, film: [D::F; 2], lens: [D::F; 2]) -> PathRay<D> {
+        let camera = CameraRecord::uniform(d);
+        // What a pinhole sees in the plane of focus, every point of the lens sees in the same place of the film.
+        let focus = (camera.forward + camera.on_film(film)).scale(camera.focus_distance);
+        let [x, y] = disc(d, lens).map(|c| c * camera.lens_radius);
+        let on_lens = camera.right.normalize(d).scale(x) + camera.up.normalize(d).scale(y);
+        let dir = (focus - on_lens).normalize(d);
+        PathRay::unbounded(d, camera.eye + on_lens, dir)
+    }
+
+    #[inline(always)]
+    fn has_lens(&self) -> bool {
+        true
+    }
+}
+
 impl<D: Domain> Camera<D> for Orthographic {
     #[inline(always)]
-    fn ray(&self, d: D, film: [D::F; 2]) -> PathRay<D> {
+    fn ray(&self, d: D, film: [D::F; 2], _: [D::F; 2]) -> PathRay<D> {
         let camera = CameraRecord::uniform(d);
         let org = camera.eye + camera.on_film(film);
         PathRay::unbounded(d, org, camera.forward.normalize(d))
+    }
+}
+
+impl<D: Domain> Camera<D> for Panorama {
+    #[inline(always)]
+    fn ray(&self, d: D, [x, y]: [D::F; 2], _: [D::F; 2]) -> PathRay<D> {
+        let camera = CameraRecord::uniform(d);
+        let (sin_longitude, cos_longitude) = sincos_turns(d, x * d.lit(0.5));
+        let (sin_latitude, cos_latitude) = sincos_turns(d, y * d.lit(0.25));
+        let dir = camera.forward.scale(cos_latitude * cos_longitude)
+            + camera
+                .right
+                .normalize(d)
+                .scale(cos_latitude * sin_longitude)
+            + camera.up.normalize(d).scale(sin_latitude);
+        PathRay::unbounded(d, camera.eye, dir.normalize(d))
     }
 }
 
@@ -116,11 +171,13 @@ mod tests {
             let mut data = SceneData::default();
             data.push(CameraRecord {
                 eye: [0.0; 3].into(),
+                lens_radius: 0.0,
                 right: [0.6, 0.0, 0.8].into(),
                 frame_width,
                 up: [0.0, 1.5, 0.0].into(),
                 frame_height,
                 forward: [0.0, 0.0, -1.0].into(),
+                focus_distance: 0.0,
             });
             // In any order: what was cut off or added once leaves no trace.
             for aspect in [1.0, 4.0, 2.0, 0.1, 0.5, 1.9995, 1.0] {

@@ -6,6 +6,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::cryptomatte::LEVELS;
+
 /// How the samples of a pixel become its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reduction {
@@ -13,6 +15,9 @@ pub enum Reduction {
     Mean,
     /// The first sample as it is: means of indices and of places on two objects mean nothing.
     First,
+    /// Which ids they have, and how many of them have each: the ids that cover most of the pixel, the largest first, each
+    /// with the part that it covers.
+    Coverage,
     /// What is known of all of them; no sample holds any of it.
     Statistic(Statistic),
 }
@@ -45,7 +50,7 @@ macro_rules! layers {
                 match self { $(Self::$layer => $name,)* }
             }
 
-            /// The names of its channels.
+            /// The names of its channels within it.
             pub const fn channels(self) -> &'static [&'static str] {
                 match self { $(Self::$layer => &$channels,)* }
             }
@@ -56,15 +61,21 @@ macro_rules! layers {
             }
 
             /// How many numbers of a sample are its.
-            const fn width(self) -> usize {
+            pub const fn width(self) -> usize {
                 match self.reduction() {
                     Reduction::Mean | Reduction::First => self.channels().len(),
+                    Reduction::Coverage => 1,
                     Reduction::Statistic(_) => 0,
                 }
             }
         }
     };
 }
+
+/// Ids and coverages by rank, two of each in every numbered layer of a file.
+const CRYPTOMATTE: [&str; 2 * LEVELS] = [
+    "00.R", "00.G", "00.B", "00.A", "01.R", "01.G", "01.B", "01.A", "02.R", "02.G", "02.B", "02.A",
+];
 
 layers! {
     /// How much light the surface seen first reflects, in [0, 1], as denoisers want it; 0 where nothing is seen.
@@ -85,6 +96,10 @@ layers! {
     Variance = "variance", ["R", "G", "B", "Y"], Reduction::Statistic(Statistic::Variance);
     /// Standard error of the pixel: the root of the mean squared difference to the true image that is to be expected.
     StandardError = "standard_error", ["R", "G", "B", "Y"], Reduction::Statistic(Statistic::StandardError);
+    /// [Ids](crate::cryptomatte) of the objects' names.
+    CryptoObject = "crypto_object", CRYPTOMATTE, Reduction::Coverage;
+    /// [Ids](crate::cryptomatte) of the materials' names.
+    CryptoMaterial = "crypto_material", CRYPTOMATTE, Reduction::Coverage;
 }
 
 /// The depth of nothing: compositors expect a large finite number.
@@ -169,6 +184,18 @@ impl FromIterator<Layer> for Layers {
     }
 }
 
+impl Layer {
+    /// The names of its channels in files.
+    pub fn channel_names(self) -> impl Iterator<Item = String> {
+        let between = match self.reduction() {
+            Reduction::Coverage => "",
+            Reduction::Mean | Reduction::First | Reduction::Statistic(_) => ".",
+        };
+        let channels = self.channels().iter();
+        channels.map(move |channel| format!("{self}{between}{channel}"))
+    }
+}
+
 impl fmt::Display for Layer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
@@ -202,7 +229,7 @@ mod tests {
             }
             assert_eq!(layers.stride(), next, "{bits:b}");
         }
-        assert_eq!(Layers::MAX_STRIDE, 15);
+        assert_eq!(Layers::MAX_STRIDE, 17);
     }
 
     #[test]

@@ -5,6 +5,7 @@ pub mod alias_table;
 pub mod alpha;
 pub mod bsdf;
 pub mod camera;
+pub mod cryptomatte;
 pub mod domain;
 pub mod film;
 pub mod layer;

@@ -4,7 +4,7 @@ use crate::domain::Buffer;
 use crate::scene_data::SceneData;
 
 /// Raised whenever the meaning of buffers changes.
-const MAGIC: [u8; 8] = *b"RSCENE03";
+const MAGIC: [u8; 8] = *b"RSCENE04";
 
 /// Bytes that are no scene data, or another version's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -59,6 +59,10 @@ record! {
         row {
             /// Index of its material in the scene's description.
             material: word,
+            /// [Id](crate::cryptomatte::id) of its name.
+            name_id: real,
+            /// Id of its material's name.
+            material_name_id: real,
         }
     }
 }

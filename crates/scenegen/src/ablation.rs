@@ -8,7 +8,7 @@ use crate::desc::{
 };
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
-use crate::plan::{CullingRule, PlanOptions};
+use crate::plan::{CullingRule, Optics, PlanOptions};
 use crate::sixteen_bits;
 
 /// How an effect is taken out of a scene, in words; `None` for those without which there is no picture, or which
@@ -38,6 +38,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::TexturedEmission => "its mean",
         Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => "off",
         Effect::Environment => "black",
+        Effect::DepthOfField => "a pinhole",
         Effect::DiffuseReflection
         | Effect::MixedLobes
         | Effect::NearestFilter
@@ -49,7 +50,8 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         | Effect::FloatTexels
         | Effect::SecondUvSet
         | Effect::PerspectiveCamera
-        | Effect::OrthographicCamera => return None,
+        | Effect::OrthographicCamera
+        | Effect::PanoramicCamera => return None,
     })
 }
 
@@ -80,6 +82,7 @@ pub fn without(
             .lights
             .retain(|light| !matches!(light.kind, PunctualKind::Directional { .. })),
         Effect::Environment => scene.environment = None,
+        Effect::DepthOfField => options.optics = Optics::Projection,
         _ => {
             for material in &mut scene.materials {
                 change(effect, material, &mut means);

@@ -65,5 +65,7 @@ effects! {
     DirectionalLights = "directional lights",
     Environment = "environment",
     PerspectiveCamera = "perspective camera",
+    DepthOfField = "depth of field",
     OrthographicCamera = "orthographic camera",
+    PanoramicCamera = "panoramic camera",
 }

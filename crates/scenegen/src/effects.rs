@@ -288,7 +288,9 @@ fn light_effect(light: &LightNode) -> Effect {
 fn camera_effect(camera: &CameraNode) -> Effect {
     match camera {
         CameraNode::Perspective => Effect::PerspectiveCamera,
+        CameraNode::ThinLens => Effect::DepthOfField,
         CameraNode::Orthographic => Effect::OrthographicCamera,
+        CameraNode::Panorama => Effect::PanoramicCamera,
     }
 }
 

@@ -8,9 +8,10 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use clap::Parser;
 use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, TileRenderer};
+use residual_frontend::cryptomatte::Manifest;
 use residual_frontend::hierarchy_quality;
 use residual_frontend::options::{RenderArgs, Size};
-use residual_frontend::session::Session;
+use residual_frontend::session::{Session, Subject};
 use residual_frontend::stats::{DeviceReport, Preparation, SceneSummary, Statistics, TierReport};
 use residual_render::camera::set_aspect;
 use residual_render::scene_data::SceneData;
@@ -36,6 +37,8 @@ struct StandaloneScene {
     is_bounded: bool,
     /// The effects that are in.
     effects: &'static [&'static str],
+    /// The layers of Cryptomatte by their names, each with the names behind its ids.
+    manifests: &'static [(&'static str, &'static [&'static str])],
     /// What [`SceneData::to_bytes`] wrote.
     data: &'static [u8],
     /// The renderer.
@@ -97,10 +100,19 @@ fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
         traversal: &bvh,
     };
     let options = args.render.render_options(size, scene.reach);
+    let manifests = scene.manifests.iter();
+    let manifests = manifests.map(|&(layer, names)| Manifest {
+        layer: layer.parse().expect("a layer"),
+        names: names.iter().map(ToString::to_string).collect(),
+    });
+    let subject = Subject {
+        name: scene.name,
+        layers: scene.renderer.layers(),
+        manifests: &manifests.collect::<Vec<_>>(),
+    };
     let rendered = session.render(
-        scene.name,
+        subject,
         &options,
-        scene.renderer.layers(),
         |film, pass| Ok::<_, Infallible>(device.pass(scene.renderer, &view, &options, film, pass)),
         |_| (),
     )?;

@@ -261,7 +261,7 @@ fn layers<'t>(
     let channels = features.channels(set);
     for layer in set.of_samples() {
         let first = set.offset(layer) - Layers::RADIANCE;
-        outputs = match channels[first..first + layer.channels().len()] {
+        outputs = match channels[first..first + layer.width()] {
             [x, y, z] => outputs.vector(layer.name(), vec3(x, y, z)),
             [x] => outputs.real(layer.name(), x),
             _ => unreachable!("layers are vectors or numbers"),

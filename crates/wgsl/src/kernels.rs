@@ -315,7 +315,7 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
             let Some(value) = step.output("step", layer.name()) else {
                 continue;
             };
-            let (first, channels) = (self.layers.offset(layer), layer.channels().len());
+            let (first, channels) = (self.layers.offset(layer), layer.width());
             for (channel, component) in [".x", ".y", ".z"].into_iter().take(channels).enumerate() {
                 let component = if channels == 1 { "" } else { component };
                 let place = first + channel;

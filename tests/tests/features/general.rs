@@ -140,7 +140,12 @@ fn a_renderer_for_everything_gives_the_same_bits() {
     let missing: Vec<_> = missing.collect();
     assert_eq!(
         missing,
-        [&Effect::BackFaceCulling, &Effect::OrthographicCamera]
+        [
+            &Effect::BackFaceCulling,
+            &Effect::DepthOfField,
+            &Effect::OrthographicCamera,
+            &Effect::PanoramicCamera
+        ]
     );
 
     let renderer = residual_driver::compile(&everything, LaneCount::Eight).unwrap();

@@ -114,7 +114,7 @@ pub enum Buffer {
     Environment,
     /// A [`CameraRecord`](crate::camera::CameraRecord).
     Camera,
-    /// An [`ObjectRecord`](crate::triangle::ObjectRecord) for each object. Only where a renderer asks for the materials of objects.
+    /// An [`ObjectRecord`](crate::triangle::ObjectRecord) for each object. Only where layers read it.
     Objects,
     /// A [`MediumRecord`](crate::tracer::MediumRecord) for each medium. Only where there are any.
     Media,

@@ -2,10 +2,11 @@
 //!
 //! Pixels are kept tile by tile, so that a device's threads each own the tiles they render and share nothing. Beside
 //! radiance a film has the [`Layers`] that it was made for; what is kept of each is said by its
-//! [`Reduction`].
+//! [`Reduction`](crate::layer::Reduction).
 
 mod adaptive;
 mod estimates;
+mod layers;
 mod noise;
 mod pass;
 mod rect;
@@ -21,7 +22,7 @@ pub use tile::FilmTile;
 
 use residual_accuracy::Sampled;
 
-use crate::layer::{Layer, Layers, Reduction, Statistic};
+use crate::layer::Layers;
 
 /// Pixels along the side of a tile. The paths under way in one, with all they carry, fit a second-level cache.
 pub const TILE_SIZE: u32 = 64;
@@ -249,60 +250,6 @@ impl Film {
         })
     }
 
-    /// One channel of a layer, row by row from the top; `None` where the film does not have the layer, or the layer not
-    /// so many channels.
-    pub fn channel(&self, layer: Layer, channel: usize) -> Option<Vec<f32>> {
-        self.layer(layer)?.into_iter().nth(channel)
-    }
-
-    /// All channels of a layer; `None` where the film does not have it.
-    pub fn layer(&self, layer: Layer) -> Option<Vec<Vec<f32>>> {
-        if !self.layers.has(layer) {
-            return None;
-        }
-        let channels = 0..layer.channels().len();
-        if let Reduction::Statistic(statistic) = layer.reduction() {
-            return Some(self.statistic(statistic, channels.len()));
-        }
-        let stride = self.layers.stride() - Layers::RADIANCE;
-        let first = self.layers.offset(layer) - Layers::RADIANCE;
-        let values = |channel: usize| {
-            let value = |(tile, index): (&FilmTile, usize)| {
-                let kept = tile.channels[index * stride + first + channel];
-                let count = match layer.reduction() {
-                    Reduction::Mean => tile.samples.max(1),
-                    Reduction::First | Reduction::Statistic(_) => 1,
-                };
-                (kept / count as f64) as f32
-            };
-            self.places().map(value).collect()
-        };
-        Some(channels.map(values).collect())
-    }
-
-    /// What is known of the samples of each pixel, in so many channels.
-    fn statistic(&self, statistic: Statistic, channels: usize) -> Vec<Vec<f32>> {
-        // Of these points' error, the samples' variance says too much.
-        let effect = match statistic {
-            Statistic::StandardError => self.error().map_or(1.0, |error| error.design_effect),
-            Statistic::Variance | Statistic::Count => 1.0,
-        };
-        let values = |channel: usize| {
-            let value = |sampled: Sampled<'_>| {
-                let samples = sampled.samples as f64;
-                let variance = || sampled.moments.statistics(sampled.samples).0.variance[channel];
-                let value = match statistic {
-                    Statistic::Count => samples,
-                    Statistic::Variance => variance(),
-                    Statistic::StandardError => (variance() / samples.max(1.0) * effect).sqrt(),
-                };
-                value as f32
-            };
-            self.sampled().map(value).collect()
-        };
-        (0..channels).map(values).collect()
-    }
-
     /// The image: mean linear red, green, blue, row by row from the top.
     pub fn image(&self) -> Vec<[f32; 3]> {
         self.sampled().map(|s| mean(&s).map(|c| c as f32)).collect()
@@ -364,28 +311,6 @@ mod tests {
         assert!((film.mean()[0] - 1000.0).abs() < 1e-6);
         let expected = 0.25 / n / (1000.0 * 1000.0 * 1.01);
         assert!((film.error().unwrap().relmse.value / expected - 1.0).abs() < 1e-3);
-    }
-
-    #[test]
-    fn layers_are_means_first_samples_and_counts() {
-        let layers = Layers::NONE
-            .with(Layer::Normal)
-            .with(Layer::Depth)
-            .with(Layer::SampleCount);
-        assert_eq!(layers.stride(), 7);
-        let mut film = Film::new(2, 1, 8, layers);
-        let pixel = |normal: f32, depth| [1.0, 1.0, 1.0, normal, 0.0, -normal, depth];
-        let first = [pixel(0.0, 5.0), pixel(1.0, 7.0)].concat();
-        let second = [pixel(1.0, 9.0), pixel(0.5, 11.0)].concat();
-        film.tiles_mut()[0].add(&[first, second].concat());
-        let channel = |layer, channel| film.channel(layer, channel).unwrap();
-        assert_eq!(channel(Layer::Normal, 0), [0.5, 0.75]);
-        assert_eq!(channel(Layer::Normal, 2), [-0.5, -0.75]);
-        assert_eq!(channel(Layer::Depth, 0), [5.0, 7.0]);
-        assert_eq!(channel(Layer::SampleCount, 0), [2.0, 2.0]);
-        assert_eq!(film.channel(Layer::Normal, 3), None);
-        assert_eq!(film.channel(Layer::Albedo, 0), None);
-        assert_eq!(film.image(), [[1.0; 3]; 2]);
     }
 
     #[test]

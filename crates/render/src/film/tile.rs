@@ -4,6 +4,7 @@ use residual_accuracy::{PixelMoments, SampleIndex};
 
 use super::noise::Noises;
 use super::rect::TileRect;
+use crate::cryptomatte::Coverage;
 use crate::layer::{Layer, Layers, Reduction};
 
 /// One tile of a [`Film`](super::Film).
@@ -14,6 +15,8 @@ pub struct FilmTile {
     layers: Layers,
     /// Sums, or first samples, of the channels behind radiance, pixel by pixel.
     pub(super) channels: Vec<f64>,
+    /// The ids of each pixel, for every Cryptomatte layer.
+    coverages: Vec<(Layer, Vec<Coverage>)>,
     pub(super) samples: u64,
     pub(super) invalid: u64,
     /// Read where samples are spent by it.
@@ -22,11 +25,16 @@ pub struct FilmTile {
 
 impl FilmTile {
     pub(super) fn new(rect: TileRect, layers: Layers) -> Self {
+        let coverages = layers
+            .iter()
+            .filter(|layer| layer.reduction() == Reduction::Coverage)
+            .map(|layer| (layer, vec![Coverage::default(); rect.area()]));
         Self {
             rect,
             pixels: vec![PixelMoments::default(); rect.area()],
             layers,
             channels: vec![0.0; rect.area() * (layers.stride() - Layers::RADIANCE)],
+            coverages: coverages.collect(),
             samples: 0,
             invalid: 0,
             noises: None,
@@ -62,6 +70,16 @@ impl FilmTile {
     /// What its pixels keep beside radiance.
     pub fn layers(&self) -> Layers {
         self.layers
+    }
+
+    /// What the pixels keep of a Cryptomatte layer.
+    ///
+    /// # Panics
+    /// If the film has no such layer.
+    pub(super) fn coverage(&self, layer: Layer) -> &[Coverage] {
+        let kept = self.coverages.iter().find(|(other, _)| *other == layer);
+        let (_, pixels) = kept.expect("a Cryptomatte layer of the film");
+        pixels
     }
 
     /// Adds samples to every pixel; `samples[sample][row][column][channel]`, with the channels of the film's layers
@@ -101,16 +119,22 @@ impl FilmTile {
         let is_added = |layer: &Layer| match layer.reduction() {
             Reduction::Mean => true,
             Reduction::First => self.samples == 1,
-            Reduction::Statistic(_) => false,
+            Reduction::Coverage | Reduction::Statistic(_) => false,
         };
         for layer in self.layers.iter().filter(is_added) {
             let first = self.layers.offset(layer);
-            let numbers = first..first + layer.channels().len();
+            let numbers = first..first + layer.width();
             let kept = self.channels.chunks_exact_mut(stride - Layers::RADIANCE);
             for (kept, values) in kept.zip(sample.chunks_exact(stride)) {
                 for number in numbers.clone() {
                     kept[number - Layers::RADIANCE] += f64::from(values[number]);
                 }
+            }
+        }
+        for (layer, pixels) in &mut self.coverages {
+            let number = self.layers.offset(*layer);
+            for (pixel, values) in pixels.iter_mut().zip(sample.chunks_exact(stride)) {
+                pixel.add(values[number]);
             }
         }
     }

@@ -7,12 +7,19 @@ use crate::domain::Domain;
 /// 1/π.
 pub const FRAC_1_PI: f64 = std::f64::consts::FRAC_1_PI;
 
-/// A direction on the hemisphere around +z with density cos θ/π.
+/// A uniformly distributed point of the unit disc.
 #[inline(always)]
-pub fn cosine_hemisphere<D: Domain>(d: D, u: [D::F; 2]) -> Vec3<D::F> {
+pub fn disc<D: Domain>(d: D, u: [D::F; 2]) -> [D::F; 2] {
     let (sin, cos) = sincos_turns(d, u[1]);
     let r = d.sqrt(u[0]);
-    vec3(r * cos, r * sin, d.sqrt(d.lit(1.0) - u[0]))
+    [r * cos, r * sin]
+}
+
+/// A direction on the hemisphere around +z with density cos θ/π: above a point of the disc (Malley's method).
+#[inline(always)]
+pub fn cosine_hemisphere<D: Domain>(d: D, u: [D::F; 2]) -> Vec3<D::F> {
+    let [x, y] = disc(d, u);
+    vec3(x, y, d.sqrt(d.lit(1.0) - u[0]))
 }
 
 /// Density of [`cosine_hemisphere`], per steradian.

@@ -129,7 +129,8 @@ entered!(LightKind {
     const fn takes_three() -> bool;
 });
 entered!(Camera {
-    fn ray(d, film: [D::F; 2]) -> PathRay<D>;
+    fn ray(d, film: [D::F; 2], lens: [D::F; 2]) -> PathRay<D>;
+    const fn has_lens() -> bool;
 });
 entered!(AlphaTest {
     fn passes(d, ray: [Vec3<D::F>; 2], hit: &SurfaceHit<D>) -> D::M;

@@ -92,7 +92,9 @@ nodes! {
     /// A kind of camera.
     CameraNode: Camera in camera {
         Perspective,
+        ThinLens,
         Orthographic,
+        Panorama,
     }
 
     /// A test of alpha; traversal makes it, apart from the other inputs.

@@ -10,7 +10,7 @@ use crate::math::{Color, Vec3};
 use crate::sampler::Sampler;
 use crate::surface::PathRay;
 
-/// The pair of random numbers for the direction; the camera has pair 0.
+/// The pair of random numbers for the direction; the camera has pairs 0 and 2.
 const DIRECTION: u32 = 1;
 
 /// The tracer of ambient occlusion: from 0, where everything around is near, to 1, also where nothing is seen.

@@ -25,6 +25,7 @@ impl<D: Domain> Features<D> {
     ) -> Self {
         let surface = vertex.surface;
         let mut features = Self::nothing(d, path);
+        let object = || ObjectRecord::load(d, surface.object);
         let mut put = |layer, values: &[D::F]| features.put(layers, layer, values);
         if layers.has(Layer::Albedo) {
             let wo = surface.frame.to_local(d, vertex.wo);
@@ -50,8 +51,14 @@ impl<D: Domain> Features<D> {
             put(Layer::ObjectIndex, &[index]);
         }
         if layers.has(Layer::MaterialIndex) {
-            let ObjectRecord { material } = ObjectRecord::load(d, surface.object);
-            put(Layer::MaterialIndex, &[d.to_real(material + d.uint(1))]);
+            let index = d.to_real(object().material + d.uint(1));
+            put(Layer::MaterialIndex, &[index]);
+        }
+        if layers.has(Layer::CryptoObject) {
+            put(Layer::CryptoObject, &[object().name_id]);
+        }
+        if layers.has(Layer::CryptoMaterial) {
+            put(Layer::CryptoMaterial, &[object().material_name_id]);
         }
         features
     }

@@ -6,6 +6,10 @@ use crate::domain::Domain;
 use crate::math::Vec3;
 use crate::sampler::{SampleKey, Sampler};
 
+/// Pairs of random numbers that make a camera ray. A tracer may use pair 1 for itself, and those from 4 on.
+const FILM: u32 = 0;
+const LENS: u32 = 2;
+
 /// Options of a tracer, as a device gets them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -48,8 +52,8 @@ impl<D: Domain> Settings<D> {
         }
     }
 
-    /// The camera path of a sample, through a random place of its pixel. Every tracer begins with it; it uses the
-    /// first pair of random numbers.
+    /// The camera path of a sample, through a random place of its pixel and, if the camera has one, of its lens. Every
+    /// tracer begins with it.
     #[inline(always)]
     pub(super) fn camera_path<C: Camera<D>, S: Sampler<D>>(
         &self,
@@ -60,13 +64,17 @@ impl<D: Domain> Settings<D> {
         sample: D::U,
     ) -> Path<D> {
         let key = SampleKey::new(d, pixel[0], pixel[1], sample, self.seed);
-        let jitter = sampler.pair(d, key, d.uint(0));
+        let jitter = sampler.pair(d, key, d.uint(FILM));
+        let lens = match camera.has_lens() {
+            true => sampler.pair(d, key, d.uint(LENS)),
+            false => [d.lit(0.0); 2],
+        };
         let [width, height] = self.image;
         let (two, one) = (d.lit(2.0), d.lit(1.0));
         let x = (d.to_real(pixel[0]) + jitter[0]) / width * two - one;
         let y = one - (d.to_real(pixel[1]) + jitter[1]) / height * two;
         Path {
-            ray: camera.ray(d, [x, y]),
+            ray: camera.ray(d, [x, y], lens),
             throughput: Vec3::splat(one),
             pdf: d.lit(0.0),
             key,

@@ -75,11 +75,13 @@ pub(crate) fn scene() -> SceneData {
     let mut vector = || [0; 3].map(|_| random.between(-1.0, 1.0)).into();
     data.push(CameraRecord {
         eye: vector(),
+        lens_radius: 0.25,
         right: vector(),
         frame_width: 0.0,
         up: vector(),
         frame_height: 1.0,
         forward: vector(),
+        focus_distance: 2.5,
     });
     let picks = alias_entries(&mut random, 5, 2);
     set_picks(&mut data, picks.into_iter());

@@ -68,7 +68,11 @@ impl Formula for CameraAndSampler {
             key,
             state: PathState(state),
         } = tracer.on_emit(d, &camera, [x, y], index);
-        let through = camera.ray(d, [out.reals[0], out.reals[1]]);
+        let through = camera.ray(
+            d,
+            [out.reals[0], out.reals[1]],
+            [out.reals[1], out.reals[0]],
+        );
         for ray in [ray, through] {
             out.vector(ray.org);
             out.vector(ray.dir);
@@ -83,7 +87,12 @@ impl Formula for CameraAndSampler {
 
 #[test]
 fn cameras_and_samplers() {
-    for camera in [CameraNode::Perspective, CameraNode::Orthographic] {
+    for camera in [
+        CameraNode::Perspective,
+        CameraNode::ThinLens,
+        CameraNode::Orthographic,
+        CameraNode::Panorama,
+    ] {
         for sampler in [AnySampler::Independent, AnySampler::Sobol] {
             check(&CameraAndSampler(camera.clone(), sampler));
         }

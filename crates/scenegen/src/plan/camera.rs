@@ -7,6 +7,7 @@ use residual_render::scene_data::SceneData;
 
 use super::camera_choice::CameraChoice;
 use super::error::PlanError;
+use super::optics::{Focus, Optics, distance_in_the_middle};
 use super::options::PlanOptions;
 use crate::desc::{CameraDesc, Projection, SceneDesc, Warning, WarningKind};
 
@@ -147,7 +148,7 @@ pub(super) fn choose(
             .cloned()
             .unwrap_or_else(|| framing(bounds, aspect))
     };
-    let camera = match &options.camera {
+    let mut camera = match &options.camera {
         CameraChoice::Default => {
             if scene.cameras.is_empty() {
                 warnings.push(Warning {
@@ -193,17 +194,34 @@ pub(super) fn choose(
             }
         }
     };
-    let (kind, frame_height, forward) = match camera.projection {
-        Projection::Perspective { yfov } => (
-            CameraNode::Perspective,
-            (yfov * 0.5).tan(),
-            camera.rotation * Vec3::NEG_Z,
-        ),
-        Projection::Orthographic { ymag } => (
-            CameraNode::Orthographic,
-            ymag,
-            camera.rotation * Vec3::NEG_Z,
-        ),
+    let frame_height = match camera.projection {
+        Projection::Perspective { yfov } => (yfov * 0.5).tan(),
+        Projection::Orthographic { ymag } => ymag,
+    };
+    let (mut lens_radius, mut focus_distance) = (0.0, 0.0);
+    let kind = match (options.optics, camera.projection) {
+        (Optics::Projection, Projection::Perspective { .. }) => CameraNode::Perspective,
+        (Optics::Projection, Projection::Orthographic { .. }) => CameraNode::Orthographic,
+        (Optics::ThinLens { aperture, focus }, Projection::Perspective { .. }) => {
+            lens_radius = aperture.radius(frame_height);
+            focus_distance = match focus {
+                Focus::Distance(distance) => distance,
+                Focus::Middle => {
+                    distance_in_the_middle(&camera, data).ok_or(PlanError::NothingInFocus)?
+                }
+            };
+            CameraNode::ThinLens
+        }
+        (Optics::ThinLens { .. }, Projection::Orthographic { .. }) => {
+            return Err(PlanError::NoLens {
+                camera: format!("{:?}", camera.name),
+            });
+        }
+        (Optics::Panorama, _) => {
+            // They are of the file's camera, which sees less.
+            camera.clip = None;
+            CameraNode::Panorama
+        }
     };
     let frame_width = camera
         .frame_aspect
@@ -211,15 +229,18 @@ pub(super) fn choose(
     let half_height = fitted_height([frame_width, frame_height], aspect);
     let right = camera.rotation * Vec3::X * (half_height * aspect);
     let up = camera.rotation * Vec3::Y * half_height;
+    let forward = camera.rotation * Vec3::NEG_Z;
     let [eye, right, up, forward] =
         [camera.position, right, up, forward].map(|v| v.to_array().into());
     data.push(CameraRecord {
         eye,
+        lens_radius,
         right,
         frame_width,
         up,
         frame_height,
         forward,
+        focus_distance,
     });
     Ok((kind, camera))
 }

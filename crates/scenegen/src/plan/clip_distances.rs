@@ -3,11 +3,10 @@
 
 use glam::Vec3;
 use residual_render::camera::CameraRecord;
-use residual_render::program::CameraNode;
 use residual_render::scene_data::SceneData;
 use residual_render::triangle::TriangleRecord;
 
-use crate::desc::{ClipDistances, Dismissed, Warning, WarningKind};
+use crate::desc::{CameraDesc, ClipDistances, Dismissed, Projection, Warning, WarningKind};
 
 /// Distances may differ by so much before it counts as a difference.
 const SLACK: f32 = 1e-3;
@@ -21,13 +20,8 @@ pub(super) enum Clipping {
 }
 
 /// Looks for triangles within the image that the file's camera would not show.
-pub(super) fn look(
-    clip: ClipDistances,
-    kind: &CameraNode,
-    camera_name: &str,
-    data: &SceneData,
-) -> Clipping {
-    let view = View::new(kind, &data.record(0));
+pub(super) fn look(clip: ClipDistances, camera: &CameraDesc, data: &SceneData) -> Clipping {
+    let view = View::new(camera.projection, &data.record(0));
     let far = clip.far.unwrap_or(f32::INFINITY);
     let (mut nearer, mut farther) = (false, false);
     for triangle in data.records::<TriangleRecord>() {
@@ -48,7 +42,7 @@ pub(super) fn look(
             break;
         }
     }
-    let place = format!("camera {camera_name:?}");
+    let place = format!("camera {:?}", camera.name);
     let cut = match (nearer, farther) {
         (false, false) => {
             return Clipping::Nothing(Dismissed {
@@ -80,7 +74,7 @@ struct View {
 }
 
 impl View {
-    fn new(kind: &CameraNode, camera: &CameraRecord) -> Self {
+    fn new(projection: Projection, camera: &CameraRecord) -> Self {
         let [eye, right, up, forward] =
             [camera.eye, camera.right, camera.up, camera.forward].map(|v| Vec3::from(v.to_array()));
         Self {
@@ -89,9 +83,9 @@ impl View {
             up: up.normalize_or_zero(),
             forward: forward.normalize_or_zero(),
             half: [right, up].map(|edge| edge.length()),
-            is_perspective: match kind {
-                CameraNode::Perspective => true,
-                CameraNode::Orthographic => false,
+            is_perspective: match projection {
+                Projection::Perspective { .. } => true,
+                Projection::Orthographic { .. } => false,
             },
         }
     }

@@ -19,6 +19,17 @@ pub enum PlanError {
         /// Upwards.
         up: [f64; 3],
     },
+    /// Parallel rays pass through no lens.
+    #[error(
+        "the camera {camera} sees by parallel rays, which no lens blurs; only perspective has depth of field"
+    )]
+    NoLens {
+        /// Its name.
+        camera: String,
+    },
+    /// Nothing says how far away it is sharp.
+    #[error("nothing is in the middle of the image to focus on; give a distance of focus")]
+    NothingInFocus,
     /// The scene needs more than 2³² words of something.
     #[error(
         "the scene is too large: its {what} do not fit 32-bit indices; split it or simplify it"

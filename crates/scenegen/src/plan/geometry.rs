@@ -135,6 +135,7 @@ pub(super) fn pack(
         objects.push(PlannedObject {
             name: seen.instance.name.clone(),
             material: seen.mesh.material,
+            material_name: scene.materials[seen.mesh.material].name.clone(),
             triangles: start..data.triangle_count() as u32,
         });
     }

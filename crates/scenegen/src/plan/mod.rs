@@ -20,6 +20,7 @@ mod materials;
 mod media;
 mod metallic_roughness;
 mod opacity;
+mod optics;
 mod options;
 mod planned;
 mod planned_materials;
@@ -37,6 +38,7 @@ pub use camera_choice::{CameraChoice, View};
 use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
+pub use optics::{Aperture, Focus, Optics};
 pub use options::{Binding, CullingRule, LightPicks, PlanOptions};
 pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
 
@@ -45,7 +47,7 @@ use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warn
 /// Plans a scene.
 ///
 /// # Errors
-/// If the camera asked for does not exist, or the scene does not fit 32-bit indices.
+/// If the camera asked for does not exist or cannot be focused, or the scene does not fit 32-bit indices.
 pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError> {
     let mut warnings = Vec::new();
     let mut data = SceneData::default();
@@ -90,7 +92,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     }
     match chosen
         .clip
-        .map(|clip| clip_distances::look(clip, &camera, &chosen.name, &data))
+        .map(|clip| clip_distances::look(clip, &chosen, &data))
     {
         Some(Clipping::Something(warning)) => warnings.push(warning),
         Some(Clipping::Nothing(reason)) => dismissed.push(reason),
@@ -140,7 +142,12 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             ),
         });
     }
-    if options.layers.has(Layer::MaterialIndex) {
+    let of_objects = [
+        Layer::MaterialIndex,
+        Layer::CryptoObject,
+        Layer::CryptoMaterial,
+    ];
+    if of_objects.iter().any(|&layer| options.layers.has(layer)) {
         plan.pack_objects();
     }
     Ok(plan)

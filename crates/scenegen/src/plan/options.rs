@@ -5,6 +5,7 @@ use residual_render::sampler::AnySampler;
 use residual_render::tracer::TracerNode;
 
 use super::camera_choice::CameraChoice;
+use super::optics::Optics;
 
 /// When an input's value is known to the compiler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -46,6 +47,8 @@ pub struct PlanOptions {
     pub binding: Binding,
     /// Which camera.
     pub camera: CameraChoice,
+    /// What is put before its eye.
+    pub optics: Optics,
     /// Width and height of the image in pixels.
     pub size: [u32; 2],
     /// Culling.
@@ -67,6 +70,7 @@ impl Default for PlanOptions {
         Self {
             binding: Binding::default(),
             camera: CameraChoice::default(),
+            optics: Optics::default(),
             size: [640, 480],
             culling: CullingRule::default(),
             flat_normals: false,

@@ -1,9 +1,11 @@
 //! A plan and what it says of the scene's objects, materials and lights.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use residual_render::cryptomatte;
 use residual_render::domain::Buffer;
+use residual_render::layer::Layer;
 use residual_render::program::Structure;
 use residual_render::scene_data::SceneData;
 use residual_render::tracer::TracerNode;
@@ -44,12 +46,25 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Fills [`Buffer::Objects`], which is empty unless a renderer asks for the materials of objects.
+    /// Fills [`Buffer::Objects`], which is empty unless layers read it.
     pub(super) fn pack_objects(&mut self) {
         self.data.buffer_mut(Buffer::Objects).clear();
         for object in &self.objects {
-            let material = object.material as u32;
-            self.data.push(ObjectRecord { material });
+            self.data.push(ObjectRecord {
+                material: object.material as u32,
+                name_id: cryptomatte::id(&object.name),
+                material_name_id: cryptomatte::id(&object.material_name),
+            });
+        }
+    }
+
+    /// The names behind the ids of a Cryptomatte layer; `None` for other layers.
+    pub fn names(&self, layer: Layer) -> Option<BTreeSet<&str>> {
+        let objects = self.objects.iter();
+        match layer {
+            Layer::CryptoObject => Some(objects.map(|object| &*object.name).collect()),
+            Layer::CryptoMaterial => Some(objects.map(|object| &*object.material_name).collect()),
+            _ => None,
         }
     }
 
@@ -69,6 +84,8 @@ pub struct PlannedObject {
     pub name: String,
     /// Index of its material in the description.
     pub material: usize,
+    /// The material's name.
+    pub material_name: String,
     /// Its triangles.
     pub triangles: Range<u32>,
 }

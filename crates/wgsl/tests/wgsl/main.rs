@@ -85,7 +85,12 @@ fn every_light() {
 
 #[test]
 fn every_camera_and_sampler() {
-    for camera in [CameraNode::Perspective, CameraNode::Orthographic] {
+    for camera in [
+        CameraNode::Perspective,
+        CameraNode::ThinLens,
+        CameraNode::Orthographic,
+        CameraNode::Panorama,
+    ] {
         for sampler in [AnySampler::Independent, AnySampler::Sobol] {
             let text = scene_module(&Structure {
                 camera: camera.clone(),
