@@ -47,6 +47,7 @@ goldens! {
     float_texels
     dielectric_coat
     independent_sampler
+    light_tree
     linear_texels
     masked_emission
     matte

@@ -143,11 +143,23 @@ fn weights_of_all_kinds_give_one_image() {
     }
 }
 
+/// The probability of a light that a path has met is that with which it is picked.
+#[test]
+fn weights_of_all_kinds_give_one_image_by_a_tree() {
+    for (name, scene) in scenes() {
+        let alone = render(&scene, AnyMis::LightsOnly, LightPicks::Mixed, 9);
+        for (seed, mis) in (10..).zip([AnyMis::PowerHeuristic, AnyMis::BalanceHeuristic]) {
+            let tree = render(&scene, mis, LightPicks::Tree, seed);
+            agree(&alone, &tree, &format!("{name}, {mis:?}, by a tree"));
+        }
+    }
+}
+
 #[test]
 fn lights_may_be_picked_in_any_way() {
     for (name, scene) in scenes() {
         let mixed = render(&scene, AnyMis::LightsOnly, LightPicks::Mixed, 5);
-        for (seed, picks) in (6..).zip([LightPicks::Power, LightPicks::Uniform]) {
+        for (seed, picks) in (6..).zip([LightPicks::Power, LightPicks::Uniform, LightPicks::Tree]) {
             let other = render(&scene, AnyMis::LightsOnly, picks, seed);
             agree(&mixed, &other, &format!("{name}, {picks:?}"));
         }

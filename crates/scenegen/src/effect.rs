@@ -56,6 +56,7 @@ effects! {
     SpotLights = "spot lights",
     DirectionalLights = "directional lights",
     Environment = "environment",
+    LightTree = "light tree",
     PerspectiveCamera = "perspective camera",
     OrthographicCamera = "orthographic camera",
 }

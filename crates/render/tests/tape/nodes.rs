@@ -152,6 +152,7 @@ pub(crate) fn structure(lights: Vec<LightNode>) -> Structure {
     Structure {
         programs: vec![],
         lights,
+        light_tree: None,
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),

@@ -45,6 +45,7 @@ pub(crate) fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Struc
     Structure {
         programs,
         lights,
+        light_tree: None,
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),
