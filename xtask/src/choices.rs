@@ -31,7 +31,7 @@ pub(crate) enum SamplerArg {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum LightsArg {
-    /// From a tree where there are many, mixed where there are few
+    /// From a tree where there are many and it pays, mixed elsewhere
     Auto,
     /// Half of the picks by power, half evenly by kind
     Mixed,

@@ -31,8 +31,8 @@ record! {
         row {
             /// Centre of the sphere around them, world space.
             center: vector,
-            /// Square of its radius.
-            radius2: real,
+            /// Its radius.
+            radius: real,
         }
         row {
             /// The unit axis of the cone of directions in which they shine most.
@@ -54,9 +54,9 @@ record! {
 /// What is added to the index of a light where a walk ends.
 pub const LEAF: u32 = 1 << 31;
 
-/// The square of a radius so large that all places are in the middle: what has it, and this many times an intensity of 1, is of
-/// importance 1 everywhere.
-pub const EVERYWHERE: f64 = (1_u128 << 80) as f64;
+/// A radius so large that all places are in the middle: what has it is of the same importance everywhere, its intensity over the
+/// square of half this radius.
+pub const EVERYWHERE: f64 = (1_u64 << 40) as f64;
 
 /// Of two clusters that both may shine at a point, none is picked less often than this.
 const LEAST_SHARE: f64 = 1.0 / 256.0;
@@ -70,18 +70,19 @@ pub struct LightTree {
 
 impl<D: Domain> ClusterRecord<D> {
     /// What may arrive at a point from these lights, as if all of them stood at the sphere's centre, shining
-    /// with the cosine of the least angle that any of them may have to the point.
+    /// with the cosine of the least angle that any of them may have to the point. Where the point is in the sphere, they are in
+    /// part nearer than the centre and in part farther away, and in the mean half the radius away at least.
     #[inline(always)]
     fn importance(&self, d: D, at: Vec3<D::F>) -> D::F {
         let (zero, one) = (d.lit(0.0), d.lit(1.0));
         let away = at - self.center;
-        let distance2 = d.max(away.dot(d, away), d.lit(1e-30));
-        let inverse = one / d.max(distance2, self.radius2);
+        let distance = away.length(d);
+        let least = d.max(self.radius * d.lit(0.5), d.lit(1e-15));
+        let inverse = one / d.max(distance, least);
         // The angle that the sphere subtends; a right one within it.
-        let sin2_sphere = self.radius2 * inverse;
-        let (sin_sphere, cos_sphere) =
-            (d.sqrt(sin2_sphere), d.sqrt(d.max(one - sin2_sphere, zero)));
-        let cos_axis = away.dot(d, self.axis) * d.sqrt(inverse);
+        let sin_sphere = d.min(self.radius * inverse, one);
+        let cos_sphere = d.sqrt(one - sin_sphere * sin_sphere);
+        let cos_axis = away.dot(d, self.axis) * inverse;
         let sin_axis = d.sqrt(d.max(one - cos_axis * cos_axis, zero));
         // The angle to the axis, less that of the cone and that of the sphere, but not less than 0.
         let in_cone = d.lt(self.cos, cos_axis);
@@ -90,7 +91,9 @@ impl<D: Domain> ClusterRecord<D> {
         let (cos, sin) = (d.select(in_cone, one, cos), d.select(in_cone, zero, sin));
         let in_sphere = d.lt(cos_sphere, cos);
         let cos = d.select(in_sphere, one, d.fma(cos, cos_sphere, sin * sin_sphere));
-        d.max(cos, zero) * self.intensity / d.max(distance2, self.radius2 * d.lit(0.25))
+        // Among them, the point may see any of them from its front.
+        let least = d.select(d.lt(distance, self.radius), d.lit(0.25), zero);
+        d.max(cos, least) * self.intensity * (inverse * inverse)
     }
 }
 

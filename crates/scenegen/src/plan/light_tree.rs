@@ -31,11 +31,13 @@ impl LightBounds {
         }
     }
 
-    fn center(&self) -> DVec3 {
+    /// The middle of the box.
+    pub(super) fn center(&self) -> DVec3 {
         0.5 * (self.corners[0] + self.corners[1])
     }
 
-    fn diagonal2(&self) -> f64 {
+    /// The square of the box's diagonal.
+    pub(super) fn diagonal2(&self) -> f64 {
         (self.corners[1] - self.corners[0]).length_squared()
     }
 
@@ -69,7 +71,7 @@ impl LightBounds {
         let (sin, cos) = self.half_angle.sin_cos();
         ClusterRecord {
             center: self.center().as_vec3().to_array().into(),
-            radius2: (0.25 * self.diagonal2()) as f32,
+            radius: (0.5 * self.diagonal2().sqrt()) as f32,
             axis: self.axis.as_vec3().to_array().into(),
             cos: cos as f32,
             sin: sin as f32,
@@ -167,9 +169,10 @@ fn intensity(reach: &Reach) -> f64 {
 
 /// A cluster of the same importance everywhere.
 fn everywhere(importance: f64, next: u32) -> ClusterRecord {
-    let bounds = LightBounds::point(DVec3::ZERO, importance * EVERYWHERE);
+    let intensity = importance * (0.5 * EVERYWHERE).powi(2);
+    let bounds = LightBounds::point(DVec3::ZERO, intensity);
     ClusterRecord {
-        radius2: EVERYWHERE as f32,
+        radius: EVERYWHERE as f32,
         ..bounds.record(next)
     }
 }

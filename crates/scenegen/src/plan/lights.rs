@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use residual_render::alias_table::alias_entries;
+use residual_render::domain::Buffer;
 use residual_render::light::{
     self, AreaRecord, EnvironmentHeader, LightRecord, LightTree, PunctualRecord, push_light,
     set_picks,
@@ -14,6 +15,7 @@ use residual_render::texture::{AnyFormat, srgb_table};
 use super::geometry::Geometry;
 use super::images::Images;
 use super::light_tree::{self, LightBounds, Reach};
+use super::light_tree_gain;
 use super::options::LightPicks;
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
@@ -35,8 +37,31 @@ pub(super) struct PlannedLights {
     reaches: Vec<Reach>,
 }
 
-/// From how many lights at finite places on a tree pays.
-const LIGHTS_OF_A_TREE: usize = 64;
+/// Of fewer lights at finite places there is no tree, unless it is asked for.
+const FEW_LIGHTS: usize = 8;
+/// From how many on there is always one.
+const MANY_LIGHTS: usize = 1024;
+/// Among numbers between the two there is one where samples have so much less [variance](light_tree_gain::gain).
+const LEAST_GAIN: f64 = 1.5;
+
+/// Builds the tree over lights with the probabilities that a table gives them, if it pays or is asked for.
+fn tree(lights: &[(Reach, f64)], picks: LightPicks, data: &mut SceneData) -> Option<LightTree> {
+    let bounded = lights.iter();
+    let bounded = bounded.filter(|(reach, _)| matches!(reach, Reach::Bounded(_)));
+    let count = bounded.count();
+    if lights.is_empty() || (picks == LightPicks::Auto && count < FEW_LIGHTS) {
+        return None;
+    }
+    let tree = light_tree::build(lights, data);
+    if picks == LightPicks::Auto && count < MANY_LIGHTS {
+        let gain = light_tree_gain::gain(lights, tree, data);
+        if gain < LEAST_GAIN {
+            data.buffer_mut(Buffer::LightTree).clear();
+            return None;
+        }
+    }
+    Some(tree)
+}
 
 /// Plans all lights and writes their buffers.
 pub(super) fn plan_lights(
@@ -293,18 +318,6 @@ impl PlannedLights {
         light::set_environment(data, header, alias_entries(&weights, mean));
     }
 
-    /// What the picks are that were asked for, among these lights.
-    fn resolved(&self, picks: LightPicks) -> LightPicks {
-        let bounded = self.reaches.iter();
-        let bounded = bounded.filter(|reach| matches!(reach, Reach::Bounded(_)));
-        match picks {
-            LightPicks::Auto if bounded.count() >= LIGHTS_OF_A_TREE => LightPicks::Tree,
-            LightPicks::Auto => LightPicks::Mixed,
-            LightPicks::Tree if self.powers.is_empty() => LightPicks::Mixed,
-            asked => asked,
-        }
-    }
-
     /// Mixed picks go by power, and evenly to emitting triangles, points, spots, … as far as there are any. How many *programs* for emission there are must
     /// not matter: it differs between binding policies, whose images are the same.
     fn set_picks(&mut self, picks: LightPicks, data: &mut SceneData) {
@@ -327,11 +340,17 @@ impl PlannedLights {
             LightPicks::Uniform => 1.0 / self.powers.len() as f64,
         };
         let probabilities: Vec<f64> = self.powers.iter().map(probability).collect();
-        self.picks = self.resolved(picks);
-        if self.picks == LightPicks::Tree {
+        self.picks = picks;
+        if let LightPicks::Auto | LightPicks::Tree = picks {
             let reaches = self.reaches.iter().copied();
-            let lights: Vec<_> = reaches.zip(probabilities).collect();
-            self.tree = Some(light_tree::build(&lights, data));
+            let lights: Vec<_> = reaches.zip(probabilities.iter().copied()).collect();
+            self.tree = tree(&lights, picks, data);
+            self.picks = match self.tree {
+                Some(_) => LightPicks::Tree,
+                None => LightPicks::Mixed,
+            };
+        }
+        if self.tree.is_some() {
             return;
         }
         set_picks(data, alias_entries(&probabilities, 1.0));

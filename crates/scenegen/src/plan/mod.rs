@@ -16,6 +16,7 @@ mod explain;
 mod geometry;
 mod images;
 mod light_tree;
+mod light_tree_gain;
 #[cfg(test)]
 mod light_tree_tests;
 mod lights;

@@ -30,7 +30,7 @@ pub enum CullingRule {
 /// How often each light is picked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LightPicks {
-    /// From a tree where there are many lights at finite places, mixed where there are few.
+    /// From a tree where there are many lights at finite places among which it pays, mixed elsewhere.
     #[default]
     Auto,
     /// Half of the picks by power, half evenly by kind, so that a bright sky outside does not starve the lamps inside.
