@@ -10,7 +10,9 @@ use residual_scenegen::desc::{
     SurfaceDesc, TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
-use residual_scenegen::plan::{Aperture, Binding, Focus, Optics, Plan, PlanOptions, plan};
+use residual_scenegen::plan::{
+    Aperture, Binding, Focus, LightPicks, Optics, Plan, PlanOptions, plan,
+};
 
 use crate::fixtures::{
     Builder, color, glass, material, matte, metallic_roughness, scalar, sheet, sphere,
@@ -755,7 +757,39 @@ fn lights() -> Vec<Tiny> {
     };
     let position = Vec3::new(0.4, 0.6, 1.2);
     let direction = Vec3::new(-0.3, -0.6, -0.8).normalize();
+    let mut light_tree = Tiny::new(
+        "light_tree",
+        &[
+            Effect::EmittingSurfaces,
+            Effect::Environment,
+            Effect::LightTree,
+        ],
+        &[],
+        {
+            let mut image = 0;
+            let mut scene = lit(|b| {
+                for [x, y] in [[-0.9, 0.3], [-0.2, 0.9], [0.6, 0.5]] {
+                    let lamp = MaterialDesc {
+                        emission: color([20.0, 15.0 * y, 10.0]),
+                        ..material("lamp", matte([0.0; 3]))
+                    };
+                    let edge = [0.2, 0.0, 0.0];
+                    b.add(lamp, [sheet([x, y, 0.9], edge, [0.0, 0.05, 0.2])]);
+                }
+                b.light(PunctualKind::Point { position }, [0.3, 0.4, 0.5]);
+                image = b.floats(8, 4);
+            });
+            scene.environment = Some(EnvironmentDesc {
+                image,
+                strength: 0.2,
+                rotation: 0.7,
+            });
+            scene
+        },
+    );
+    light_tree.options.light_picks = LightPicks::Tree;
     vec![
+        light_tree,
         Tiny::new(
             "emission",
             &[Effect::EmittingSurfaces],

@@ -96,6 +96,7 @@ fn scene(
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),
         between: Between::default(),
+        light_tree: None,
         layers: Layers::NONE,
     };
     (structure, data)

@@ -53,6 +53,7 @@ goldens! {
     dielectric_coat
     frosted_glass
     independent_sampler
+    light_tree
     linear_texels
     masked_emission
     matte

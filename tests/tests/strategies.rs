@@ -1,12 +1,13 @@
 //! Strategies of sampling agree with one another: light that two can find is found by each alone (L-10).
 
 use residual_device_cpu::{CpuDevice, LaneCount};
+use residual_render::domain::Buffer;
 use residual_render::film::Film;
 use residual_render::layer::{Layer, Layers};
 use residual_render::passes::RenderOptions;
 use residual_render::tracer::{AnyMis, TracerNode};
 use residual_scenegen::desc::{
-    AlphaMode, Filter, MaterialDesc, Projection, ScalarInput, SceneDesc, Wrap,
+    AlphaMode, Filter, MaterialDesc, Projection, PunctualKind, ScalarInput, SceneDesc, Wrap,
 };
 use residual_scenegen::plan::{LightPicks, PlanOptions, plan};
 use residual_tests::Prepared;
@@ -143,13 +144,70 @@ fn weights_of_all_kinds_give_one_image() {
     }
 }
 
+/// The probability of a light that a path has met is that with which it is picked.
+#[test]
+fn weights_of_all_kinds_give_one_image_by_a_tree() {
+    for (name, scene) in scenes() {
+        let alone = render(&scene, AnyMis::LightsOnly, LightPicks::Mixed, 9);
+        for (seed, mis) in (10..).zip([AnyMis::PowerHeuristic, AnyMis::BalanceHeuristic]) {
+            let tree = render(&scene, mis, LightPicks::Tree, seed);
+            agree(&alone, &tree, &format!("{name}, {mis:?}, by a tree"));
+        }
+    }
+}
+
 #[test]
 fn lights_may_be_picked_in_any_way() {
     for (name, scene) in scenes() {
         let mixed = render(&scene, AnyMis::LightsOnly, LightPicks::Mixed, 5);
-        for (seed, picks) in (6..).zip([LightPicks::Power, LightPicks::Uniform]) {
+        for (seed, picks) in (6..).zip([LightPicks::Power, LightPicks::Uniform, LightPicks::Tree]) {
             let other = render(&scene, AnyMis::LightsOnly, picks, seed);
             agree(&mixed, &other, &format!("{name}, {picks:?}"));
         }
+    }
+}
+
+/// A floor under lamps at these places.
+fn under_lamps(places: impl IntoIterator<Item = [f32; 3]>) -> SceneDesc {
+    let mut b = Builder::new("lamps");
+    let corner = [-5.0, 0.0, 5.0];
+    b.add(
+        material("floor", matte([0.8; 3])),
+        [sheet(corner, [10.0, 0.0, 0.0], [0.0, 0.0, -10.0])],
+    );
+    for place in places {
+        let position = place.into();
+        b.light(PunctualKind::Point { position }, [1.0; 3]);
+    }
+    b.camera(
+        "camera",
+        [0.5, 2.5, 4.5],
+        [0.0, 0.7, 0.0],
+        Projection::Perspective { yfov: 0.9 },
+    );
+    b.finish()
+}
+
+#[test]
+fn a_tree_is_where_it_pays() {
+    let levels = |scene: &SceneDesc| {
+        let plan = plan(scene, &PlanOptions::default()).unwrap();
+        assert_eq!(
+            plan.data.buffer(Buffer::LightTree).is_empty(),
+            plan.structure.light_tree.is_none()
+        );
+        plan.structure.light_tree.map(|tree| tree.levels)
+    };
+    let spread = |count: u16| {
+        let places = (0..count).map(|k| [f32::from(k % 4), 0.3, f32::from(k / 4)]);
+        under_lamps(places.map(|[x, y, z]| [2.5 * x - 4.0, y, 2.5 * z - 4.0]))
+    };
+    assert!(levels(&spread(16)).is_some_and(|levels| (4..=8).contains(&levels)));
+    assert_eq!(levels(&spread(7)), None, "there are few");
+    let together = under_lamps((0..16_u8).map(|k| [0.01 * f32::from(k), 4.0, 0.0]));
+    assert_eq!(levels(&together), None, "they shine alike");
+    assert!(levels(&under_lamps((0..2000).map(|_| [0.0, 4.0, 0.0]))).is_some());
+    for (name, scene) in scenes() {
+        assert_eq!(levels(&scene), None, "{name}");
     }
 }

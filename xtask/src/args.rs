@@ -142,7 +142,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_enum, default_value_t = SamplerArg::Sobol)]
     pub(crate) sampler: SamplerArg,
     /// How often each light is picked
-    #[arg(long, value_enum, default_value_t = LightsArg::Mixed)]
+    #[arg(long, value_enum, default_value_t = LightsArg::Auto)]
     pub(crate) lights: LightsArg,
     /// How light is weighed that is found by sampling lights and by following the BSDF
     #[arg(long, value_enum, default_value_t = MisArg::Power)]

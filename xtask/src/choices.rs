@@ -31,12 +31,16 @@ pub(crate) enum SamplerArg {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum LightsArg {
+    /// From a tree where there are many and it pays, mixed elsewhere
+    Auto,
     /// Half of the picks by power, half evenly by kind
     Mixed,
     /// By power
     Power,
     /// Each as often as any other
     Uniform,
+    /// From a tree, by what may arrive at the point
+    Tree,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -107,9 +107,11 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             CullingArg::None => CullingRule::None,
         },
         light_picks: match args.lights {
+            LightsArg::Auto => LightPicks::Auto,
             LightsArg::Mixed => LightPicks::Mixed,
             LightsArg::Power => LightPicks::Power,
             LightsArg::Uniform => LightPicks::Uniform,
+            LightsArg::Tree => LightPicks::Tree,
         },
         sampler: match args.sampler {
             SamplerArg::Sobol => AnySampler::Sobol,

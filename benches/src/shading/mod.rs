@@ -60,6 +60,7 @@ pub fn plan() -> Plan {
         structure: Structure {
             programs: nodes,
             lights: vec![LightNode::Point],
+            light_tree: None,
             camera: CameraNode::Perspective,
             sampler: AnySampler::Sobol,
             tracer: TracerNode::default(),

@@ -1,15 +1,15 @@
 //! Light of the environment against quadrature (hard case L-08).
 
-use residual_render::alias_table::AliasEntry;
+use residual_render::alias_table::{AliasEntry, alias_entries};
 use residual_render::domain::{Buffer, Scalar, Uint};
-use residual_render::light::{Environment, EnvironmentHeader, LightKind};
+use residual_render::light::{self, Environment, EnvironmentHeader, LightKind};
 use residual_render::math::vec3::vec3;
 use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 
 use crate::support::irradiance::estimate;
 use crate::support::random::Rng;
-use crate::support::scenes::{FLOOR, floor, scene, set_environment};
+use crate::support::scenes::{FLOOR, floor, scene, set_environment, texel_weights};
 use crate::support::stats::{Family, chi_squared};
 use crate::support::{Worst, array, dot};
 
@@ -156,4 +156,81 @@ fn environment_samples_see_what_they_were_drawn_with() {
         chi_squared(&counts, &expected) > 0.001,
         "{counts:?} {expected:?}"
     );
+}
+
+/// A sun a billion times as bright as the sky, in one texel, also in the top row and at the seam.
+#[test]
+fn a_tiny_sun_leaves_no_texel_out() {
+    let mut family = Family::default();
+    for (width, height, column, row) in [
+        (1024, 512, 513, 170),
+        (1024, 512, 0, 400),
+        (1024, 512, 300, 0),
+        (64, 32, 63, 9),
+    ] {
+        let mut texels = vec![[1.0_f32; 3]; width * height];
+        texels[row * width + column] = [1e9; 3];
+        let mut data = scene(&[FLOOR]);
+        set_environment(&mut data, width, &texels, 0.0);
+        let weights = texel_weights(width, &texels);
+        let total: f64 = weights.iter().sum();
+        let mean = total / weights.len() as f64;
+        let header = EnvironmentHeader::from_words(data.buffer(Buffer::Environment));
+        light::set_environment(&mut data, header, alias_entries(&weights, mean));
+
+        // The probability of each texel, enumerated from the table, and its density.
+        let words = data.buffer(Buffer::Environment);
+        let words = &words[EnvironmentHeader::WORDS as usize..];
+        let mut probabilities = vec![0.0; weights.len()];
+        for (slot, words) in words.chunks(AliasEntry::WORDS as usize).enumerate() {
+            let entry = AliasEntry::from_words(words);
+            let part = f64::from(entry.threshold) / weights.len() as f64;
+            probabilities[slot] += part;
+            probabilities[entry.alias as usize] += 1.0 / weights.len() as f64 - part;
+            let density = weights[slot] / mean;
+            assert!((f64::from(entry.density) - density).abs() <= 1e-6 * density);
+            // Numbers that decide are multiples of 2⁻²⁴: below that, a texel has the number 0.
+            assert!(entry.threshold > 0.0, "{slot}");
+        }
+        for (probability, weight) in probabilities.iter().zip(&weights) {
+            let exact = weight / total;
+            assert!(
+                *probability > 0.0 && (probability - exact).abs() <= 1e-6 * exact + 1e-12,
+                "{probability} {exact}"
+            );
+        }
+
+        // The sky's irradiance is π; what the sun adds is integrated over the texels around it.
+        let direction = |u: f64, v: f64| {
+            let (sin, cos) = (PI * v).sin_cos();
+            let (s, c) = (2.0 * PI * (u - 0.5)).sin_cos();
+            ([sin * c, cos, sin * s], sin)
+        };
+        let at = |x: f64, y: f64| {
+            let (x, y) = (column as f64 + x, row as f64 + y);
+            direction(x / width as f64, y / height as f64)
+        };
+        let toward = at(0.5, 0.5).0;
+        let tilted = [toward[0] + 0.5, toward[1] - 0.3, toward[2] + 0.4];
+        let length = dot(tilted, tilted).sqrt();
+        for normal in [toward, tilted.map(|x| x / length)] {
+            let steps = 150;
+            let mut sun = 0.0;
+            for k in 0..steps * steps {
+                let [x, y] = [k % steps, k / steps];
+                let [x, y] = [x, y].map(|i| 3.0 * (f64::from(i) + 0.5) / f64::from(steps) - 1.0);
+                if row as f64 + y > 0.0 {
+                    let (dir, sin) = at(x, y);
+                    sun += (seen(&data, dir).0 - 1.0) * dot(dir, normal).max(0.0) * sin;
+                }
+            }
+            sun *= 2.0 * PI * PI / (width * height) as f64 * 9.0 / f64::from(steps * steps);
+            let mean = estimate(&data, &(Environment, ()), normal, 40_000, 142);
+            let z = mean.z(PI + sun, 1e-4);
+            let what = format!("{column}, {row}, {normal:?}: {} {sun}", mean.value());
+            assert!(z.abs() < 4.0, "{what}: {z}");
+            family.add_z(z, what);
+        }
+    }
+    family.assert_plausible();
 }

@@ -8,7 +8,7 @@ use crate::desc::{
 };
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
-use crate::plan::{CullingRule, Optics, PlanOptions};
+use crate::plan::{CullingRule, LightPicks, Optics, PlanOptions};
 use crate::sixteen_bits;
 
 /// How an effect is taken out of a scene, in words; `None` for those without which there is no picture, or which
@@ -39,6 +39,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => "off",
         Effect::Environment => "black",
         Effect::DepthOfField => "a pinhole",
+        Effect::LightTree => "picked from a table",
         Effect::DiffuseReflection
         | Effect::MixedLobes
         | Effect::NearestFilter
@@ -72,6 +73,7 @@ pub fn without(
         Effect::VertexColors => scene.meshes.iter_mut().for_each(|mesh| mesh.colors = None),
         Effect::SmoothNormals => options.flat_normals = true,
         Effect::BackFaceCulling => options.culling = CullingRule::None,
+        Effect::LightTree => options.light_picks = LightPicks::Mixed,
         Effect::PointLights => scene
             .lights
             .retain(|light| !matches!(light.kind, PunctualKind::Point { .. })),

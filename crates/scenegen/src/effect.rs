@@ -64,6 +64,7 @@ effects! {
     SpotLights = "spot lights",
     DirectionalLights = "directional lights",
     Environment = "environment",
+    LightTree = "light tree",
     PerspectiveCamera = "perspective camera",
     DepthOfField = "depth of field",
     OrthographicCamera = "orthographic camera",

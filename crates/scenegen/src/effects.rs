@@ -37,6 +37,10 @@ impl Effects {
                 effects.add(light_effect(light), source);
             }
         }
+        if structure.light_tree.is_some() {
+            let lights: usize = plan.lights.iter().map(|kind| kind.count).sum();
+            effects.add(Effect::LightTree, &format!("{lights} lights"));
+        }
         let camera = format!("camera {:?}", plan.camera_name);
         effects.add(camera_effect(&structure.camera), &camera);
         for dismissed in &plan.dismissed {

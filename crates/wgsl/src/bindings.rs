@@ -36,6 +36,7 @@ impl Binding {
             Buffer::Params
             | Buffer::Lights
             | Buffer::LightAlias
+            | Buffer::LightTree
             | Buffer::Environment
             | Buffer::Camera
             | Buffer::Objects

@@ -107,8 +107,12 @@ pub enum Buffer {
     /// [`PunctualRecord`](crate::light::PunctualRecord), or [`LightRecord`](crate::light::LightRecord) for the
     /// environment. They lie [`LIGHT_WORDS`](crate::light::LIGHT_WORDS) apart.
     Lights,
-    /// A [`PickHeader`](crate::light::PickHeader), and an [`AliasEntry`](crate::alias_table::AliasEntry) for each light.
+    /// A [`PickHeader`](crate::light::PickHeader), and an [`AliasEntry`](crate::alias_table::AliasEntry) for each light. Only
+    /// where lights are picked from a table.
     LightAlias,
+    /// A [`LightTreeHeader`](crate::light::LightTreeHeader), a word for each light, the turns on the way to it, and pairs of
+    /// [`ClusterRecord`](crate::light::ClusterRecord). Only where lights are picked from a tree: there is no table then.
+    LightTree,
     /// An [`EnvironmentHeader`](crate::light::EnvironmentHeader), and an
     /// [`AliasEntry`](crate::alias_table::AliasEntry) for each texel.
     Environment,
@@ -137,6 +141,7 @@ impl Buffer {
         Self::Texels,
         Self::Lights,
         Self::LightAlias,
+        Self::LightTree,
         Self::Environment,
         Self::Camera,
         Self::Objects,

@@ -4,7 +4,7 @@
 //! Texels are picked from an alias table by the integral of the bilinear image over each, so that every direction
 //! that shines can be sampled; the position within the texel is uniform.
 
-use super::{Background, LightKind, LightSample, pick_probability};
+use super::{Background, LightKind, LightSample};
 use crate::alias_table::{AliasEntry, AliasTable, Outcome};
 use crate::domain::{Buffer, Domain};
 use crate::math::elementary::{atan2, sincos_turns};
@@ -158,11 +158,11 @@ impl<D: Domain> LightKind<D> for Environment {
         let [columns, rows] = header.size(d);
         let column = d.to_uint(Clamp.wrap(d, d.floor(uv[0] * columns), columns));
         let row = d.to_uint(Clamp.wrap(d, d.floor(uv[1] * rows), rows));
-        let pick = pick_probability(d, header.light);
         let density = TEXELS.density(d, row * header.width + column);
         Some(Background {
             radiance: header.radiance(d, uv),
-            pdf: solid_angle_pdf(d, density, sin_theta) * pick,
+            pdf: solid_angle_pdf(d, density, sin_theta),
+            light: header.light,
         })
     }
 }

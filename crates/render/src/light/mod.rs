@@ -1,21 +1,26 @@
 //! Lights: what next-event estimation samples, and what rays that miss everything see.
 //!
 //! A scene's kinds of lights are a type list, `(A, (B, ()))`, so that a renderer contains the kinds that its
-//! scene has and no others. One light is picked from an alias table by its power, then sampled by its kind.
+//! scene has and no others. One light is picked, from an alias table by its power or from a [tree](LightTree) by what may arrive
+//! at the point, then sampled by its kind.
 
 mod area;
+mod by_tree;
 mod environment;
 mod pick;
 mod punctual;
 #[cfg(test)]
 mod record_tests;
+mod tree;
 
 pub use area::{Area, AreaRecord};
+pub use by_tree::ByTree;
 pub use environment::{Environment, EnvironmentHeader, set_environment};
 pub use pick::{
     LIGHT_WORDS, LightRecord, Pick, PickHeader, pick, pick_probability, push_light, set_picks,
 };
 pub use punctual::{Directional, Point, PunctualRecord, Spot, versine};
+pub use tree::{ClusterRecord, EVERYWHERE, LEAF, LightTree, LightTreeHeader, set_light_tree};
 
 use crate::domain::{Bundle, Domain};
 use crate::math::{Color, Vec3};
@@ -58,8 +63,10 @@ impl<D: Domain> Bundle<D> for LightSample<D> {
 pub struct Background<D: Domain> {
     /// Radiance.
     pub radiance: Color<D::F>,
-    /// Density per steradian, the pick of the light included.
+    /// Density per steradian, without the pick of the light.
     pub pdf: D::F,
+    /// Index of the light.
+    pub light: D::U,
 }
 
 /// A kind of light.
@@ -111,6 +118,17 @@ pub trait LightKinds<D: Domain> {
     fn is_empty(&self) -> bool;
     /// Whether any kind takes a third number.
     fn takes_three(&self) -> bool;
+    /// Picks a light for the point `from` with the first of two numbers, and makes of both two numbers for a place on it: from
+    /// the table, unless the list says otherwise.
+    #[inline(always)]
+    fn pick(&self, d: D, _from: Vec3<D::F>, u: [D::F; 2]) -> Pick<D> {
+        pick::pick(d, u)
+    }
+    /// The probability with which [`pick`](LightKinds::pick) picks a light for the point `from`.
+    #[inline(always)]
+    fn pick_probability(&self, d: D, _from: Vec3<D::F>, light: D::U) -> D::F {
+        pick::pick_probability(d, light)
+    }
     /// Samples a light of kind `kind`.
     fn sample(
         &self,
@@ -305,7 +323,7 @@ pub fn sample<D: Domain, L: LightKinds<D> + ?Sized>(
                 record,
                 probability,
                 place: [x, y],
-            } = pick(d, [u[0], u[1]]);
+            } = lights.pick(d, from, [u[0], u[1]]);
             let kind = KindIndex { kind, first: 0 };
             let sample = lights.sample(d, kind, record, from, [x, y, u[2]]);
             // A delta light's "density" of 1 turns into the probability of its pick; the estimator is the same.
@@ -332,11 +350,26 @@ pub fn density<D: Domain, L: LightKinds<D> + ?Sized>(
     let kind = KindIndex { kind, first: 0 };
     match lights.density(d, kind, record, ray, seen) {
         Some(density) => {
-            let density = density * pick_probability(d, light);
+            let density = density * lights.pick_probability(d, ray.org, light);
             d.select(no_light, d.lit(0.0), density)
         }
         None => d.lit(0.0),
     }
+}
+
+/// What a ray that hits nothing sees of the lights. The density is that with which light sampling proposes its direction to its
+/// origin, the pick included.
+#[inline(always)]
+pub fn background<D: Domain, L: LightKinds<D> + ?Sized>(
+    d: D,
+    lights: &L,
+    ray: &PathRay<D>,
+) -> Option<Background<D>> {
+    let seen = lights.background(d, ray.dir)?;
+    Some(Background {
+        pdf: seen.pdf * lights.pick_probability(d, ray.org, seen.light),
+        ..seen
+    })
 }
 
 /// Multiple importance sampling's power heuristic, in the form that neither overflows nor divides 0 by 0

@@ -1,12 +1,11 @@
 //! The interpreted renderer: a scene's structure as boxed nodes. It starts at once and needs no compiler.
 
 use super::boxed::Boxing;
-use super::{BoxedMaterial, Structure};
+use super::{BoxedLights, BoxedMaterial, Structure};
 use crate::alpha::{AlphaTest, Candidate, alpha_test};
 use crate::camera::Camera;
 use crate::domain::{Buffers, Domain, Scalar};
 use crate::layer::Layers;
-use crate::light::LightKind;
 use crate::renderer::{MaterialVisitor, Renderer};
 use crate::sampler::AnySampler;
 use crate::tracer::{AnyTracer, Between, Layered, Settings, TracerNode};
@@ -17,7 +16,7 @@ pub struct Interpreted<'a, D: Domain> {
     buffers: &'a Buffers<'a>,
     materials: Vec<BoxedMaterial<'a, D>>,
     alpha_tests: Vec<Option<Box<dyn AlphaTest<Scalar<'a>> + Send + Sync + 'a>>>,
-    lights: Vec<Box<dyn LightKind<D> + Send + Sync + 'a>>,
+    lights: BoxedLights<'a, D>,
     camera: Box<dyn Camera<D> + Send + Sync + 'a>,
     sampler: AnySampler,
     tracer: TracerNode,
@@ -34,7 +33,7 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
             buffers,
             materials: structure.programs.iter().map(BoxedMaterial::new).collect(),
             alpha_tests: alpha_tests.collect(),
-            lights: structure.lights.iter().map(Boxing::boxed).collect(),
+            lights: BoxedLights::new(structure),
             camera: structure.camera.boxed(),
             sampler: structure.sampler,
             tracer: structure.tracer,
@@ -47,7 +46,7 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
 impl<'a, D: Domain + 'a> Renderer<D> for Interpreted<'a, D> {
     type Camera = Box<dyn Camera<D> + Send + Sync + 'a>;
     type Tracer = Layered<AnyTracer<D, AnySampler>, Layers>;
-    type Lights = [Box<dyn LightKind<D> + Send + Sync + 'a>];
+    type Lights = BoxedLights<'a, D>;
 
     fn camera(&self) -> &Self::Camera {
         &self.camera

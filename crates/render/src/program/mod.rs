@@ -2,12 +2,14 @@
 
 mod boxed;
 mod interpreted;
+mod lights;
 mod material;
 mod nodes;
 mod table;
 mod walk;
 
 pub use interpreted::Interpreted;
+pub use lights::BoxedLights;
 pub use material::BoxedMaterial;
 pub use nodes::{
     AlphaTestNode, BsdfNode, CameraNode, ColorNode, Field, Form, FresnelNode, ImageNode,
@@ -16,6 +18,7 @@ pub use nodes::{
 pub use walk::{Leaf, Source};
 
 use crate::layer::Layers;
+use crate::light::LightTree;
 use crate::sampler::AnySampler;
 use crate::surface::Attributes;
 use crate::texture::Input;
@@ -97,6 +100,8 @@ pub struct Structure {
     pub programs: Vec<Program>,
     /// Kinds of lights, by index.
     pub lights: Vec<LightNode>,
+    /// The tree from which lights are picked; from the table, if there is none.
+    pub light_tree: Option<LightTree>,
     /// The camera's kind.
     pub camera: CameraNode,
     /// The sampler's kind.

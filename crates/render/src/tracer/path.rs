@@ -72,7 +72,7 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
         path: &Path<D>,
         lights: &L,
     ) -> Option<Color<D::F>> {
-        let seen = lights.background(d, path.ray.dir)?;
+        let seen = light::background(d, lights, &path.ray)?;
         Some(path.throughput * seen.radiance.scale(self.bsdf_weight(d, path.pdf, seen.pdf)))
     }
 

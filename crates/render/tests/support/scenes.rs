@@ -62,7 +62,27 @@ pub(crate) fn set_environment(
     let height = texels.len() / width;
     let words = texels.iter().flat_map(|&[r, g, b]| [r, g, b, 1.0]);
     *data.buffer_mut(Buffer::Texels) = words.map(f32::to_bits).collect();
-    // The integral over each texel of the bilinear luminance: tent weights 1/8, 6/8, 1/8 along each axis.
+    let weights = texel_weights(width, texels);
+    let total: f64 = weights.iter().sum();
+    let header = EnvironmentHeader {
+        width: width as u32,
+        height: height as u32,
+        first_texel: 0,
+        strength: 1.0,
+        cos: rotation.cos() as f32,
+        sin: rotation.sin() as f32,
+        light: 0,
+    };
+    let mean = total / weights.len() as f64;
+    let entries = alias_entries(&weights, |weight| weight / mean);
+    light::set_environment(data, header, entries);
+    set_lights(data, &[LightRecord { kind: 0 }], &[1.0]);
+}
+
+/// The integral of the bilinear luminance over each texel of an environment image, times the sine of its row's angle.
+pub(crate) fn texel_weights(width: usize, texels: &[[f32; 3]]) -> Vec<f64> {
+    let height = texels.len() / width;
+    // Tent weights 1/8, 6/8, 1/8 along each axis.
     let luminance = |x: i64, y: i64| {
         let x = x.rem_euclid(width as i64) as usize;
         let [r, g, b] = texels[y.clamp(0, height as i64 - 1) as usize * width + x].map(f64::from);
@@ -80,20 +100,7 @@ pub(crate) fn set_environment(
             weights.push(around.sum::<f64>() * sine);
         }
     }
-    let total: f64 = weights.iter().sum();
-    let header = EnvironmentHeader {
-        width: width as u32,
-        height: height as u32,
-        first_texel: 0,
-        strength: 1.0,
-        cos: rotation.cos() as f32,
-        sin: rotation.sin() as f32,
-        light: 0,
-    };
-    let mean = total / weights.len() as f64;
-    let entries = alias_entries(&weights, |weight| weight / mean);
-    light::set_environment(data, header, entries);
-    set_lights(data, &[LightRecord { kind: 0 }], &[1.0]);
+    weights
 }
 
 /// The one parameter block, which all triangles use: a record.

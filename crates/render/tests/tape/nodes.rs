@@ -199,6 +199,7 @@ pub(crate) fn structure(lights: Vec<LightNode>) -> Structure {
     Structure {
         programs: vec![],
         lights,
+        light_tree: None,
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),

@@ -70,11 +70,14 @@ impl Plan {
                 match lights {
                     1 => "one; nothing to choose".to_owned(),
                     _ => format!(
-                        "{lights} in an alias table: {}",
+                        "{lights} {}",
                         match self.light_picks {
-                            LightPicks::Mixed => "half of the picks by power, half evenly by kind",
-                            LightPicks::Power => "picked by power",
-                            LightPicks::Uniform => "each picked as often as any other",
+                            LightPicks::Auto | LightPicks::Mixed =>
+                                "in an alias table: half of the picks by power, half evenly by kind",
+                            LightPicks::Power => "in an alias table: picked by power",
+                            LightPicks::Uniform =>
+                                "in an alias table: each picked as often as any other",
+                            LightPicks::Tree => "in a tree: picked by what may arrive at the point",
                         }
                     ),
                 },

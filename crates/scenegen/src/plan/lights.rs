@@ -1,10 +1,12 @@
-//! Lights: records, and the alias table by which one is picked.
+//! Lights: records, and the alias table or the tree from which one is picked.
 
 use std::collections::HashSet;
 
 use residual_render::alias_table::alias_entries;
+use residual_render::domain::Buffer;
 use residual_render::light::{
-    self, AreaRecord, EnvironmentHeader, LightRecord, PunctualRecord, push_light, set_picks,
+    self, AreaRecord, EnvironmentHeader, LightRecord, LightTree, PunctualRecord, push_light,
+    set_picks,
 };
 use residual_render::program::{ColorNode, LightNode, Program, Source, SourceNode};
 use residual_render::scene_data::SceneData;
@@ -12,6 +14,8 @@ use residual_render::texture::{AnyFormat, srgb_table};
 
 use super::geometry::Geometry;
 use super::images::Images;
+use super::light_tree::{self, LightBounds, Reach};
+use super::light_tree_gain;
 use super::options::LightPicks;
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
@@ -25,8 +29,38 @@ use crate::sixteen_bits;
 pub(super) struct PlannedLights {
     pub(super) kinds: Vec<LightNode>,
     pub(super) uses: Vec<LightKindUse>,
+    pub(super) picks: LightPicks,
+    pub(super) tree: Option<LightTree>,
     /// Power of each light, and the index of its kind.
     powers: Vec<(f64, usize)>,
+    /// Where each shines.
+    reaches: Vec<Reach>,
+}
+
+/// Of fewer lights at finite places there is no tree, unless it is asked for.
+const FEW_LIGHTS: usize = 8;
+/// From how many on there is always one.
+const MANY_LIGHTS: usize = 1024;
+/// Among numbers between the two there is one where samples have so much less [variance](light_tree_gain::gain).
+const LEAST_GAIN: f64 = 1.5;
+
+/// Builds the tree over lights with the probabilities that a table gives them, if it pays or is asked for.
+fn tree(lights: &[(Reach, f64)], picks: LightPicks, data: &mut SceneData) -> Option<LightTree> {
+    let bounded = lights.iter();
+    let bounded = bounded.filter(|(reach, _)| matches!(reach, Reach::Bounded(_)));
+    let count = bounded.count();
+    if lights.is_empty() || (picks == LightPicks::Auto && count < FEW_LIGHTS) {
+        return None;
+    }
+    let tree = light_tree::build(lights, data);
+    if picks == LightPicks::Auto && count < MANY_LIGHTS {
+        let gain = light_tree_gain::gain(lights, tree, data);
+        if gain < LEAST_GAIN {
+            data.buffer_mut(Buffer::LightTree).clear();
+            return None;
+        }
+    }
+    Some(tree)
 }
 
 /// Plans all lights and writes their buffers.
@@ -114,8 +148,9 @@ impl PlannedLights {
     }
 
     /// Notes a light whose record was added to the data.
-    fn count(&mut self, kind: usize, source: &str, power: f64) {
+    fn count(&mut self, kind: usize, source: &str, power: f64, reach: Reach) {
         self.powers.push((power, kind));
+        self.reaches.push(reach);
         let of_kind = &mut self.uses[kind];
         of_kind.count += 1;
         if !of_kind.sources.iter().any(|other| other == source) {
@@ -154,10 +189,8 @@ impl PlannedLights {
                 let corners = [0, 1, 2].map(|corner| {
                     glam::DVec3::from_array(positions[3 * prim as usize + corner].map(f64::from))
                 });
-                let area = (corners[1] - corners[0])
-                    .cross(corners[2] - corners[0])
-                    .length()
-                    * 0.5;
+                let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+                let area = normal.length() * 0.5;
                 let power = std::f64::consts::PI * sides * area * radiance;
                 if power > 0.0 && power.is_finite() {
                     data.set_light(prim as usize, self.powers.len() as u32);
@@ -168,7 +201,19 @@ impl PlannedLights {
                         double_sided: u32::from(emission.double_sided),
                     };
                     push_light(data, record);
-                    self.count(kind, &source, power);
+                    let reach = Reach::Bounded(LightBounds {
+                        corners: [
+                            corners[0].min(corners[1]).min(corners[2]),
+                            corners[0].max(corners[1]).max(corners[2]),
+                        ],
+                        axis: normal.normalize_or(glam::DVec3::Z),
+                        half_angle: match emission.double_sided {
+                            true => std::f64::consts::PI,
+                            false => 0.0,
+                        },
+                        intensity: area * radiance,
+                    });
+                    self.count(kind, &source, power, reach);
                 }
             }
         }
@@ -183,9 +228,11 @@ impl PlannedLights {
         // The kind is known below.
         let record =
             |position: glam::Vec3| PunctualRecord::new(0, position.to_array(), light.intensity);
-        let (node, power, record) = match light.kind {
+        let point = |position: glam::Vec3| LightBounds::point(position.as_dvec3(), strength);
+        let (node, power, record, reach) = match light.kind {
             PunctualKind::Point { position } => {
-                (LightNode::Point, sphere * strength, record(position))
+                let reach = Reach::Bounded(point(position));
+                (LightNode::Point, sphere * strength, record(position), reach)
             }
             PunctualKind::Spot {
                 position,
@@ -201,11 +248,21 @@ impl PlannedLights {
                     [inner, outer],
                 );
                 let cone = 0.5 * sphere * light::versine(outer);
-                (LightNode::Spot, cone * strength, record)
+                let reach = Reach::Bounded(LightBounds {
+                    axis: direction.as_dvec3(),
+                    half_angle: 0.0,
+                    ..point(position)
+                });
+                (LightNode::Spot, cone * strength, record, reach)
             }
             PunctualKind::Directional { direction } => {
                 let power = std::f64::consts::PI * radius * radius * strength;
-                (LightNode::Directional, power, record(-direction))
+                (
+                    LightNode::Directional,
+                    power,
+                    record(-direction),
+                    Reach::Everywhere,
+                )
             }
         };
         let kind = self.kind(node);
@@ -216,7 +273,7 @@ impl PlannedLights {
                 ..record
             },
         );
-        self.count(kind, &format!("light {:?}", light.name), power);
+        self.count(kind, &format!("light {:?}", light.name), power, reach);
     }
 
     fn add_environment(
@@ -244,6 +301,7 @@ impl PlannedLights {
             kind,
             &format!("environment {:?}", image.name),
             std::f64::consts::PI * radius * radius * irradiance,
+            Reach::Everywhere,
         );
 
         let texels = images.param(scene, environment.image, AnyFormat::LinearFloat);
@@ -262,7 +320,7 @@ impl PlannedLights {
 
     /// Mixed picks go by power, and evenly to emitting triangles, points, spots, … as far as there are any. How many *programs* for emission there are must
     /// not matter: it differs between binding policies, whose images are the same.
-    fn set_picks(&self, picks: LightPicks, data: &mut SceneData) {
+    fn set_picks(&mut self, picks: LightPicks, data: &mut SceneData) {
         let variant = |kind: usize| std::mem::discriminant(&self.kinds[kind]);
         let total: f64 = self.powers.iter().map(|(power, _)| power).sum();
         let of_variant = |kind: usize| -> f64 {
@@ -275,13 +333,26 @@ impl PlannedLights {
         let sums: Vec<f64> = (0..self.kinds.len()).map(of_variant).collect();
         let variants: HashSet<_> = (0..self.kinds.len()).map(variant).collect();
         let probability = |&(power, kind): &(f64, usize)| match picks {
-            LightPicks::Mixed => {
+            LightPicks::Auto | LightPicks::Mixed | LightPicks::Tree => {
                 0.5 * power / total + 0.5 * power / sums[kind] / variants.len() as f64
             }
             LightPicks::Power => power / total,
             LightPicks::Uniform => 1.0 / self.powers.len() as f64,
         };
         let probabilities: Vec<f64> = self.powers.iter().map(probability).collect();
+        self.picks = picks;
+        if let LightPicks::Auto | LightPicks::Tree = picks {
+            let reaches = self.reaches.iter().copied();
+            let lights: Vec<_> = reaches.zip(probabilities.iter().copied()).collect();
+            self.tree = tree(&lights, picks, data);
+            self.picks = match self.tree {
+                Some(_) => LightPicks::Tree,
+                None => LightPicks::Mixed,
+            };
+        }
+        if self.tree.is_some() {
+            return;
+        }
         set_picks(data, alias_entries(&probabilities, 1.0));
     }
 }

@@ -15,6 +15,10 @@ mod error;
 mod explain;
 mod geometry;
 mod images;
+mod light_tree;
+mod light_tree_gain;
+#[cfg(test)]
+mod light_tree_tests;
 mod lights;
 mod materials;
 mod media;
@@ -112,10 +116,11 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let mut plan = Plan {
         name: scene.name.clone(),
         binding: options.binding,
-        light_picks: options.light_picks,
+        light_picks: lights.picks,
         structure: Structure {
             programs: materials.programs,
             lights: lights.kinds,
+            light_tree: lights.tree,
             camera,
             sampler: options.sampler,
             tracer: options.tracer,

@@ -31,13 +31,17 @@ pub enum CullingRule {
 /// How often each light is picked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LightPicks {
-    /// Half of the picks by power, half evenly by kind, so that a bright sky outside does not starve the lamps inside.
+    /// From a tree where there are many lights at finite places among which it pays, mixed elsewhere.
     #[default]
+    Auto,
+    /// Half of the picks by power, half evenly by kind, so that a bright sky outside does not starve the lamps inside.
     Mixed,
     /// By power.
     Power,
     /// Each light as often as any other.
     Uniform,
+    /// From a tree, by what may arrive at the point; those infinitely far away as often as mixed picks have them.
+    Tree,
 }
 
 /// The user's choices.

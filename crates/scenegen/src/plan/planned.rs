@@ -21,7 +21,7 @@ pub struct Plan {
     pub name: String,
     /// When inputs are known.
     pub binding: Binding,
-    /// How often each light is picked.
+    /// How often each light is picked, as decided.
     pub light_picks: LightPicks,
     /// The static half.
     pub structure: Structure,

@@ -7,6 +7,7 @@ use residual_render::bsdf::AnyInterface;
 use residual_render::domain::Domain;
 use residual_render::domain::tape::{Outputs, Record, Tape};
 use residual_render::layer::{Layer, Layers};
+use residual_render::light::LightTree;
 use residual_render::program::{
     BsdfNode, CameraNode, ColorNode, FresnelNode, LightNode, RoughnessNode, ScalarNode, Structure,
 };
@@ -81,6 +82,17 @@ fn every_light() {
         assert!(text.contains("shadow_contribution"));
         assert_eq!(text.contains("fn miss"), light == LightNode::Environment);
     }
+}
+
+#[test]
+fn lights_of_a_tree() {
+    let matte = program(BsdfNode::Diffuse { albedo: Input(0) });
+    let text = scene_module(&Structure {
+        light_tree: Some(LightTree { levels: 5 }),
+        ..structure(vec![matte], lights())
+    });
+    no_dead_code(&text);
+    assert!(text.contains("bases.light_tree") && !text.contains("bases.light_alias"));
 }
 
 #[test]

@@ -4,7 +4,8 @@ use residual_render::bsdf::AnyInterface;
 use residual_render::layer::Layers;
 use residual_render::program::{
     AlphaTestNode, BsdfNode, CameraNode, ColorNode, EmissionNode, FresnelNode, ImageNode,
-    InputNode, LayerFrameNode, LightNode, NormalNode, Program, RoughnessNode, ScalarNode, SourceNode, Structure,
+    InputNode, LayerFrameNode, LightNode, NormalNode, Program, RoughnessNode, ScalarNode,
+    SourceNode, Structure,
 };
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
@@ -47,6 +48,7 @@ pub(crate) fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Struc
     Structure {
         programs,
         lights,
+        light_tree: None,
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),

@@ -2,9 +2,10 @@
 
 use std::fmt::{self, Write as _};
 
+use residual_render::light::LightTree;
 use residual_render::program::{Program, Structure};
 
-use super::layout::Code;
+use super::layout::{Code, Name};
 use super::literals::{Images, Literals};
 use super::module::Module;
 use super::tracer;
@@ -58,6 +59,15 @@ fn implementation(out: &mut Module, plan: &Plan, literals: &Literals<'_>) -> fmt
         let light = light.literal();
         types = Code::tuple([literals.kind(&light), types]);
         values = Code::tuple([literals.value(&light), values]);
+    }
+    if let Some(LightTree { levels }) = structure.light_tree {
+        types = Code::generic(Name::of("light", "ByTree"), [types]);
+        let levels = Code::word(levels.to_string());
+        let tree = Code::literal(Name::of("light", "LightTree"), [("levels", levels)]);
+        values = Code::literal(
+            Name::of("light", "ByTree"),
+            [("tree", tree), ("kinds", values)],
+        );
     }
     let camera = structure.camera.literal();
     writeln!(
