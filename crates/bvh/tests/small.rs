@@ -99,3 +99,24 @@ fn quantized_nodes() {
     });
     assert_eq!(hits.iter().filter(|hit| hit.is_hit()).count(), 6);
 }
+
+/// So many that all triangles are tested, with sixteen rays at once.
+#[test]
+fn streams_of_many_rays() {
+    let bvh = tree::<8, 4>();
+    let rays: Vec<Ray> = rays().into_iter().cycle().take(260).collect();
+    // Neighbours that differ make no packets.
+    let turned = |ray: &Ray| Ray {
+        dir: ray.dir.map(|x| -x),
+        ..*ray
+    };
+    let rays: Vec<Ray> = rays.iter().flat_map(|ray| [*ray, turned(ray)]).collect();
+    let mut expected = vec![Hit::miss(0.0); rays.len()];
+    let mut hits = expected.clone();
+    dispatch!(Level::new(), simd => {
+        Single.closest_hits(simd, Watertight, bvh.view(), &rays, &mut expected, &AllHits);
+        Hybrid::<4>.closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
+    });
+    assert_eq!(hits, expected);
+    assert!(hits.iter().any(Hit::is_hit) && !hits.iter().all(Hit::is_hit));
+}

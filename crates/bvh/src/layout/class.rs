@@ -13,27 +13,38 @@ pub(crate) fn octant(ray: &Ray) -> Octant {
 /// The order of the axes in which a ray runs mostly along the last one, with the winding kept.
 pub(crate) type Axes = [usize; 3];
 
+/// All orders. Two axes swap for negative directions.
+pub(crate) const AXES: [Axes; 6] = [
+    [1, 2, 0],
+    [2, 1, 0],
+    [2, 0, 1],
+    [0, 2, 1],
+    [0, 1, 2],
+    [1, 0, 2],
+];
+
 #[inline(always)]
 pub(crate) fn axes(ray: &Ray) -> Axes {
+    // From a table, because mispredicted branches would cost more than the test of a packet.
+    AXES[axes_index(ray) % AXES.len()]
+}
+
+/// The index of the ray's order among [`AXES`].
+#[inline(always)]
+pub(crate) fn axes_index(ray: &Ray) -> usize {
     let [x, y, z] = ray.dir.map(f32::abs);
     let greatest = if (z >= x) & (z >= y) {
         2
     } else {
         usize::from(y >= x)
     };
-    ordered(greatest, ray.dir[greatest] < 0.0)
+    2 * greatest + usize::from(ray.dir[greatest] < 0.0)
 }
 
-/// The order in which the axis `greatest` comes last; two axes swap for negative directions.
+/// The order in which the axis `greatest` comes last.
 #[inline(always)]
 pub(crate) fn ordered(greatest: usize, negative: bool) -> Axes {
-    // A table, because mispredicted branches would cost more than the test of a packet.
-    const ORDERS: [[Axes; 2]; 3] = [
-        [[1, 2, 0], [2, 1, 0]],
-        [[2, 0, 1], [0, 2, 1]],
-        [[0, 1, 2], [1, 0, 2]],
-    ];
-    ORDERS[greatest][usize::from(negative)]
+    AXES[2 * greatest + usize::from(negative)]
 }
 
 /// What the rays of a packet have in common.

@@ -11,6 +11,7 @@ use crate::bounds::Bounds;
 use crate::filter::Culling;
 use crate::precision::ending::Ending;
 use crate::precision::expansion::{self, Pair};
+use crate::precision::shearing::Rounded;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
 use crate::precision::triangle_test::sealed::Test;
@@ -31,6 +32,19 @@ pub struct Exact;
 impl Precision for Exact {}
 
 impl Test for Exact {
+    type Shearing = Rounded;
+
+    #[inline(always)]
+    fn candidates<S: Width<W>, const W: usize>(
+        self,
+        simd: S,
+        rays: &Shear<'_, S, W>,
+        triangles: impl Triangles<S, W>,
+        culling: Culling,
+    ) -> u32 {
+        candidates(simd, rays, &triangles, culling)
+    }
+
     #[inline(always)]
     fn test<S: Width<W>, const W: usize, E: Ending>(
         self,
@@ -105,7 +119,7 @@ fn candidates<S: Width<W>, const W: usize>(
     const U: f32 = f32::EPSILON / 2.0;
     let (zero, least) = (simd.splat(0.0), simd.splat(f32::MIN_POSITIVE));
     let corners = [0, 1, 2].map(|vertex| {
-        let [x, y, z] = rays.sheared(simd, triangles, vertex);
+        let [x, y, z] = triangles.sheared::<Rounded>(simd, rays, vertex);
         let (across, along) = (simd.add(simd.abs(x), simd.abs(y)), simd.abs(z));
         let g = simd.add(across, simd.mul(along, simd.splat(4.0 * U)));
         let t = simd.add(simd.add(across, along), least);

@@ -2,6 +2,7 @@
 
 use crate::filter::Culling;
 use crate::precision::ending::Ending;
+use crate::precision::shearing::Fused;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
 use crate::precision::triangle_test::sealed::Test;
@@ -17,6 +18,20 @@ pub struct Fast;
 impl Precision for Fast {}
 
 impl Test for Fast {
+    type Shearing = Fused;
+
+    #[inline(always)]
+    fn candidates<S: Width<W>, const W: usize>(
+        self,
+        simd: S,
+        rays: &Shear<'_, S, W>,
+        triangles: impl Triangles<S, W>,
+        culling: Culling,
+    ) -> u32 {
+        let corners = corners(simd, rays, &triangles);
+        sides(simd, weights(simd, &corners), culling).lanes
+    }
+
     #[inline(always)]
     fn test<S: Width<W>, const W: usize, E: Ending>(
         self,
@@ -27,13 +42,8 @@ impl Test for Fast {
         culling: Culling,
         ending: E,
     ) -> Option<LaneHits<S, W>> {
-        let a = rays.sheared_fast(simd, &triangles, 0);
-        let b = rays.sheared_fast(simd, &triangles, 1);
-        let c = rays.sheared_fast(simd, &triangles, 2);
-        let edge =
-            |p: [S::Float; 3], q: [S::Float; 3]| simd.mul_sub(p[0], q[1], simd.mul(p[1], q[0]));
-        let [w, u, v] = [edge(c, b), edge(a, c), edge(b, a)];
-
+        let corners @ [a, b, c] = corners(simd, rays, &triangles);
+        let [w, u, v] = weights(simd, &corners);
         let inside = sides(simd, [w, u, v], culling);
         if E::EARLY && inside.lanes == 0 {
             return None;
@@ -49,4 +59,22 @@ impl Test for Fast {
         };
         hits.within(simd, rays.tmin, tmax, ending)
     }
+}
+
+/// The corners, sheared.
+#[inline(always)]
+fn corners<S: Width<W>, const W: usize>(
+    simd: S,
+    rays: &Shear<'_, S, W>,
+    triangles: &impl Triangles<S, W>,
+) -> [[S::Float; 3]; 3] {
+    let corner = |vertex| triangles.sheared::<Fused>(simd, rays, vertex);
+    [corner(0), corner(1), corner(2)]
+}
+
+/// Twice the signed areas opposite to each corner.
+#[inline(always)]
+fn weights<S: Width<W>, const W: usize>(simd: S, &[a, b, c]: &[[S::Float; 3]; 3]) -> [S::Float; 3] {
+    let edge = |p: [S::Float; 3], q: [S::Float; 3]| simd.mul_sub(p[0], q[1], simd.mul(p[1], q[0]));
+    [edge(c, b), edge(a, c), edge(b, a)]
 }

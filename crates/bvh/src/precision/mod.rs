@@ -4,6 +4,7 @@ pub(crate) mod ending;
 pub(crate) mod exact;
 mod expansion;
 pub(crate) mod fast;
+pub(crate) mod shearing;
 pub(crate) mod triangle;
 pub(crate) mod triangle_test;
 pub(crate) mod watertight;

@@ -7,6 +7,7 @@ use crate::layout::class::{Axes, axes};
 use crate::layout::columns::Columns;
 use crate::layout::triangle_packet::TrianglePacket;
 use crate::precision::ending::Ending;
+use crate::precision::shearing::Shearing;
 use crate::ray::Ray;
 use crate::simd::{Stored, Width};
 
@@ -16,6 +17,16 @@ pub trait Triangles<S: Width<W>, const W: usize> {
     fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float;
     /// The corners in one lane.
     fn corners(&self, lane: usize) -> [[f32; 3]; 3];
+    /// A corner in the space where the ray is the z axis; z is not scaled.
+    #[inline(always)]
+    fn sheared<K: Shearing>(
+        &self,
+        simd: S,
+        rays: &Shear<'_, S, W>,
+        vertex: usize,
+    ) -> [S::Float; 3] {
+        rays.sheared::<K>(simd, |axis| self.corner(simd, vertex, axis))
+    }
 }
 
 impl<S: Width<W>, const W: usize> Triangles<S, W> for &TrianglePacket<W> {
@@ -154,49 +165,18 @@ impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
         &self.rays[self.members[lane.min(self.members.len() - 1)] as usize]
     }
 
-    /// A corner relative to the origin, in the order of the axes.
+    /// A point, given by its coordinate along each axis, in the space where the ray is the z axis; z is not scaled.
     #[inline(always)]
-    pub(crate) fn relative(
+    pub(crate) fn sheared<K: Shearing>(
         &self,
         simd: S,
-        triangles: &impl Triangles<S, W>,
-        vertex: usize,
+        point: impl Fn(usize) -> S::Float,
     ) -> [S::Float; 3] {
-        let relative = |axis: usize| {
-            let corner = triangles.corner(simd, vertex, self.axes[axis]);
-            simd.sub(corner, self.org[axis])
-        };
-        [relative(0), relative(1), relative(2)]
-    }
-
-    /// A corner in the space where the ray is the z axis; z is not scaled. Every operation rounds.
-    #[inline(always)]
-    pub(crate) fn sheared(
-        &self,
-        simd: S,
-        triangles: &impl Triangles<S, W>,
-        vertex: usize,
-    ) -> [S::Float; 3] {
-        let [x, y, z] = self.relative(simd, triangles, vertex);
+        let relative = |axis: usize| simd.sub(point(self.axes[axis]), self.org[axis]);
+        let [x, y, z] = [relative(0), relative(1), relative(2)];
         [
-            simd.sub(x, simd.mul(self.slope[0], z)),
-            simd.sub(y, simd.mul(self.slope[1], z)),
-            z,
-        ]
-    }
-
-    /// As [`sheared`](Shear::sheared), negated in x and y, and fused.
-    #[inline(always)]
-    pub(crate) fn sheared_fast(
-        &self,
-        simd: S,
-        triangles: &impl Triangles<S, W>,
-        vertex: usize,
-    ) -> [S::Float; 3] {
-        let [x, y, z] = self.relative(simd, triangles, vertex);
-        [
-            simd.mul_sub(self.slope[0], z, x),
-            simd.mul_sub(self.slope[1], z, y),
+            K::sheared(simd, x, self.slope[0], z),
+            K::sheared(simd, y, self.slope[1], z),
             z,
         ]
     }

@@ -10,11 +10,26 @@ pub trait Precision: sealed::Test {}
 pub(crate) mod sealed {
     use crate::filter::Culling;
     use crate::precision::ending::Ending;
+    use crate::precision::shearing::Shearing;
     use crate::precision::triangle::{LaneHits, Shear, Triangles};
     use crate::simd::Width;
 
     /// The test itself.
     pub trait Test: Copy + Default + Send + Sync + 'static {
+        /// How it shears corners.
+        #[doc(hidden)]
+        type Shearing: Shearing;
+
+        /// The lanes whose ray may meet its triangle at some distance, as bits: no hit is in any other.
+        #[doc(hidden)]
+        fn candidates<S: Width<W>, const W: usize>(
+            self,
+            simd: S,
+            rays: &Shear<'_, S, W>,
+            triangles: impl Triangles<S, W>,
+            culling: Culling,
+        ) -> u32;
+
         /// The lanes whose ray meets its triangle at a distance in `[tmin, tmax]`, from the sides
         /// that `culling` leaves; if none is inside, `None` or no lanes, as `ending` says. (Marks of single triangles are the caller's business: see
         /// [`LaneHits::back`].)

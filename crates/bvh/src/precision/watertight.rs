@@ -11,6 +11,7 @@ use glam::DVec3;
 use crate::bounds::Bounds;
 use crate::filter::Culling;
 use crate::precision::ending::Ending;
+use crate::precision::shearing::Rounded;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
 use crate::precision::triangle_test::sealed::Test;
@@ -33,6 +34,21 @@ const CONDITION: f32 = 32.0;
 const SMALLEST: f32 = 1e-30;
 
 impl Test for Watertight {
+    type Shearing = Rounded;
+
+    #[inline(always)]
+    fn candidates<S: Width<W>, const W: usize>(
+        self,
+        simd: S,
+        rays: &Shear<'_, S, W>,
+        triangles: impl Triangles<S, W>,
+        culling: Culling,
+    ) -> u32 {
+        let corners = corners(simd, rays, &triangles);
+        let weights = products(simd, &corners).map(|(p, q)| simd.sub(p, q));
+        sides(simd, weights, culling).lanes
+    }
+
     #[inline(always)]
     fn test<S: Width<W>, const W: usize, E: Ending>(
         self,
@@ -43,15 +59,8 @@ impl Test for Watertight {
         culling: Culling,
         ending: E,
     ) -> Option<LaneHits<S, W>> {
-        let a = rays.sheared(simd, &triangles, 0);
-        let b = rays.sheared(simd, &triangles, 1);
-        let c = rays.sheared(simd, &triangles, 2);
-
-        // Twice the signed areas opposite to each vertex. With gradual underflow a difference has
-        // the sign of the comparison; flushed to zero it counts as inside, for both neighbours.
-        let products =
-            |p: [S::Float; 3], q: [S::Float; 3]| (simd.mul(p[0], q[1]), simd.mul(p[1], q[0]));
-        let edges = [products(c, b), products(a, c), products(b, a)];
+        let corners @ [a, b, c] = corners(simd, rays, &triangles);
+        let edges = products(simd, &corners);
         let [w, u, v] = edges.map(|(p, q)| simd.sub(p, q));
         let mut inside = sides(simd, [w, u, v], culling);
         if E::EARLY && inside.lanes == 0 {
@@ -90,6 +99,29 @@ impl Test for Watertight {
         }
         hits.within(simd, rays.tmin, tmax, ending)
     }
+}
+
+/// The corners, sheared.
+#[inline(always)]
+fn corners<S: Width<W>, const W: usize>(
+    simd: S,
+    rays: &Shear<'_, S, W>,
+    triangles: &impl Triangles<S, W>,
+) -> [[S::Float; 3]; 3] {
+    let corner = |vertex| triangles.sheared::<Rounded>(simd, rays, vertex);
+    [corner(0), corner(1), corner(2)]
+}
+
+/// The products whose differences are twice the signed areas opposite to each vertex. With gradual underflow a
+/// difference has the sign of the comparison; flushed to zero it counts as inside, for both neighbours.
+#[inline(always)]
+fn products<S: Width<W>, const W: usize>(
+    simd: S,
+    &[a, b, c]: &[[S::Float; 3]; 3],
+) -> [(S::Float, S::Float); 3] {
+    let products =
+        |p: [S::Float; 3], q: [S::Float; 3]| (simd.mul(p[0], q[1]), simd.mul(p[1], q[0]));
+    [products(c, b), products(a, c), products(b, a)]
 }
 
 /// `[t, u, v]` of a ray that passes inside the triangle, when `f32` cannot say where: computed in

@@ -1,9 +1,13 @@
 //! Queries of a hierarchy: one walk, the tests of boxes on its way, and the kernels that are made of
 //! them, for single rays, for packets and for many rays in flight.
 
+mod best_hits;
 pub(crate) mod cost;
+mod counting_sort;
+mod exhaustive;
 mod flight_stack;
 pub(crate) mod goal;
+mod hybrid;
 mod leaf;
 pub(crate) mod one_by_one;
 mod packet;
@@ -15,4 +19,5 @@ mod sorting_network;
 mod stack;
 pub(crate) mod stream;
 pub(crate) mod traverse;
+mod triangle_table;
 mod window;

@@ -8,19 +8,18 @@
 
 use std::mem::MaybeUninit;
 
-use crate::filter::{Culling, HitFilter, improve};
+use crate::filter::HitFilter;
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
 use crate::layout::class::Class;
 use crate::layout::columns::{Columns, greatest};
-use crate::layout::triangle_packet::SINGLE_SIDED;
 use crate::layout::validate::MAX_DEPTH;
-use crate::precision::ending::Early;
-use crate::precision::triangle::{LaneHits, OneTriangle, Shear};
+use crate::precision::triangle::{OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::{Stored, Width};
+use crate::trace::best_hits::{BestHits, lanes};
 use crate::trace::goal::Goal;
 use crate::trace::prefetch::prefetch_child;
 use crate::trace::single::{query, search};
@@ -91,7 +90,7 @@ where
         let slab = Slab::<S, R>::of_rays(simd, &columns, class.octant);
         let shear = Shear::<S, R>::of_rays(simd, &columns, rays, members, class.axes);
 
-        let mut best = Best::new(&columns);
+        let mut best = BestHits::new(&columns);
         let mut farthest = greatest(best.t);
         let mut alive = u32::MAX >> (32 - members.len());
         let mut stack = [const { MaybeUninit::<Entry>::uninit() }; STACK_CAPACITY];
@@ -192,7 +191,12 @@ where
 
     /// Tests the leaf's triangles. Returns whether there were hits.
     #[inline(always)]
-    fn leaf<const R: usize>(&self, leaf: Child, shear: &Shear<'_, S, R>, best: &mut Best<R>) -> bool
+    fn leaf<const R: usize>(
+        &self,
+        leaf: Child,
+        shear: &Shear<'_, S, R>,
+        best: &mut BestHits<R>,
+    ) -> bool
     where
         S: Width<R>,
     {
@@ -206,117 +210,17 @@ where
                     break;
                 }
                 let triangle = OneTriangle { packet, lane };
-                let ends = simd.load(&best.t);
-                let test = self
-                    .precision
-                    .test(simd, shear, triangle, ends, F::CULLING, Early);
-                let Some(mut test) = test else { continue };
-                // Rays that are strictly nearer need no second look, unless there is a filter.
-                if !F::REJECTS && !matches!(F::CULLING, Culling::PerTriangle) {
-                    let nearer = test.lanes & simd.bits(simd.lt(test.t, ends));
-                    best.improve(simd, &test, nearer, prim & !SINGLE_SIDED, self.goal);
-                    test.lanes &= !nearer;
-                    found |= nearer != 0;
-                }
-                if test.lanes == 0 {
-                    continue;
-                }
-                let [Stored(t), Stored(u), Stored(v)] = test.store(simd);
-                for lane in lanes(test.lanes) {
-                    let hit = Hit {
-                        t: t[lane],
-                        u: u[lane],
-                        v: v[lane],
-                        prim,
-                    };
-                    let back = test.back >> lane & 1 == 1;
-                    let mut improved = best.hit(lane);
-                    if improve(&mut improved, hit, back, shear.ray(lane), self.filter) {
-                        best.set(lane, &improved, self.goal);
-                        found = true;
-                    }
-                }
+                found |= best.improve(
+                    simd,
+                    self.precision,
+                    shear,
+                    triangle,
+                    prim,
+                    self.filter,
+                    self.goal,
+                );
             }
         }
         found
     }
-}
-
-/// The rays' hits so far.
-#[repr(align(64))]
-struct Best<const R: usize> {
-    /// Where the interval ends: at the hit, or where any will do, before it begins. So it does in
-    /// lanes left over.
-    t: [f32; R],
-    u: [f32; R],
-    v: [f32; R],
-    /// The bits of triangle indices.
-    prim: [f32; R],
-}
-
-impl<const R: usize> Best<R> {
-    #[inline(always)]
-    fn new(columns: &Columns<R>) -> Best<R> {
-        Best {
-            t: columns.tmax,
-            u: [0.0; R],
-            v: [0.0; R],
-            prim: [f32::from_bits(Hit::NONE); R],
-        }
-    }
-
-    #[inline(always)]
-    fn hit(&self, lane: usize) -> Hit {
-        Hit {
-            t: self.t[lane],
-            u: self.u[lane],
-            v: self.v[lane],
-            prim: self.prim[lane].to_bits(),
-        }
-    }
-
-    #[inline(always)]
-    fn set<G: Goal>(&mut self, lane: usize, hit: &Hit, _: G) {
-        self.t[lane] = if G::ANY && hit.is_hit() { -1.0 } else { hit.t };
-        self.u[lane] = hit.u;
-        self.v[lane] = hit.v;
-        self.prim[lane] = f32::from_bits(hit.prim);
-    }
-
-    /// Takes the hits of some lanes with one triangle.
-    #[inline(always)]
-    fn improve<S: Width<R>, G: Goal>(
-        &mut self,
-        simd: S,
-        hits: &LaneHits<S, R>,
-        lanes: u32,
-        prim: u32,
-        _: G,
-    ) {
-        let replace = |column: &mut [f32; R], new: S::Float| {
-            simd.store(simd.select(lanes, new, simd.load(column)), column);
-        };
-        replace(&mut self.prim, simd.splat(f32::from_bits(prim)));
-        if G::ANY {
-            replace(&mut self.t, simd.splat(-1.0));
-        } else {
-            replace(&mut self.t, hits.t);
-            replace(&mut self.u, hits.u);
-            replace(&mut self.v, hits.v);
-        }
-    }
-}
-
-/// The indices of the bits that are set.
-#[inline(always)]
-fn lanes(bits: u32) -> impl Iterator<Item = usize> {
-    let mut rest = bits;
-    std::iter::from_fn(
-        #[inline(always)]
-        move || {
-            let lane = rest.trailing_zeros() as usize;
-            rest &= rest.wrapping_sub(1);
-            (lane < 32).then_some(lane)
-        },
-    )
 }

@@ -7,10 +7,11 @@ use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
 use crate::trace::goal::{AnyHit, ClosestHit};
+use crate::trace::hybrid::HybridKernel;
 use crate::trace::packet::PacketKernel;
 use crate::trace::phased::PhasedKernel;
 use crate::trace::single::{any_hit, closest_hit};
-use crate::trace::window::{Run, WINDOW, runs};
+use crate::trace::window::WINDOW;
 
 /// How a stream of rays is traced. The answers are the same.
 pub trait Kernel<S, const N: usize, const P: usize>: Copy {
@@ -57,7 +58,8 @@ pub struct Phased;
 pub struct Packets<const R: usize>;
 
 /// Where neighbours are alike, packets of `R` rays (4, 8 or 16) until few of them agree, then single
-/// rays; elsewhere many rays in flight, as [`Phased`], or in small hierarchies one after the other.
+/// rays; elsewhere many rays in flight, as [`Phased`], in small hierarchies one after the other. Of up to 85 triangles it
+/// tests all, with sixteen rays at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hybrid<const R: usize>;
 
@@ -216,38 +218,14 @@ where
         filter: &impl HitFilter,
     ) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
-        let goal = ClosestHit;
-        let packets = PacketKernel {
+        let kernel = HybridKernel {
             simd,
             precision,
             bvh,
             filter,
-            goal,
-            few: R as u32 / 4,
+            goal: ClosestHit,
         };
-        let phased = PhasedKernel {
-            simd,
-            precision,
-            bvh,
-            filter,
-            goal,
-        };
-        for run in runs(rays) {
-            match run {
-                Run::Coherent(window) => {
-                    packets.neighbours::<R>(&rays[window.clone()], &mut hits[window]);
-                }
-                Run::Incoherent(run) if bvh.nodes().len() <= FEW_NODES => {
-                    for index in run {
-                        hits[index] = packets.single(&rays[index]);
-                    }
-                }
-                Run::Incoherent(run) => {
-                    let hits = &mut hits[run.clone()];
-                    phased.trace(&rays[run], |ray, hit| hits[ray] = hit);
-                }
-            }
-        }
+        kernel.trace::<R>(rays, |ray, hit| hits[ray] = hit);
     }
 
     #[inline(always)]
@@ -261,47 +239,16 @@ where
         filter: &impl HitFilter,
     ) {
         assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
-        let goal = AnyHit;
-        let packets = PacketKernel {
+        let kernel = HybridKernel {
             simd,
             precision,
             bvh,
             filter,
-            goal,
-            few: R as u32 / 4,
+            goal: AnyHit,
         };
-        let phased = PhasedKernel {
-            simd,
-            precision,
-            bvh,
-            filter,
-            goal,
-        };
-        let mut hits = [Hit::miss(0.0); WINDOW];
-        for run in runs(rays) {
-            match run {
-                Run::Coherent(window) => {
-                    let hits = &mut hits[..window.len()];
-                    packets.neighbours::<R>(&rays[window.clone()], hits);
-                    answer(hits, &mut occluded[window]);
-                }
-                Run::Incoherent(run) if bvh.nodes().len() <= FEW_NODES => {
-                    for index in run {
-                        occluded[index] = packets.single(&rays[index]).is_hit();
-                    }
-                }
-                Run::Incoherent(run) => {
-                    let occluded = &mut occluded[run.clone()];
-                    phased.trace(&rays[run], |ray, hit| occluded[ray] = hit.is_hit());
-                }
-            }
-        }
+        kernel.trace::<R>(rays, |ray, hit| occluded[ray] = hit.is_hit());
     }
 }
-
-/// So few nodes stay in the nearest cache, where rays wait for nothing: one after the other takes 0.9 times as long for 36
-/// triangles as many in flight.
-const FEW_NODES: usize = 16;
 
 #[inline(always)]
 fn answer(hits: &[Hit], occluded: &mut [bool]) {

@@ -9,6 +9,7 @@ use crate::layout::columns::Columns;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
+use crate::trace::counting_sort::Sorted;
 use crate::trace::goal::Goal;
 use crate::trace::packet::PacketKernel;
 
@@ -118,22 +119,8 @@ where
     where
         S: Width<N> + Width<P> + Width<R>,
     {
-        let mut classes = [0u8; WINDOW];
-        let mut ends = [0u16; Class::INVALID + 1];
-        for (ray, class) in rays.iter().zip(&mut classes) {
-            *class = Class::index(ray) as u8;
-            ends[*class as usize] += 1;
-        }
-        let mut start = 0;
-        for end in &mut ends {
-            (*end, start) = (start, start + *end);
-        }
-        let mut order = [0u16; WINDOW];
-        for (ray, &class) in classes[..rays.len()].iter().enumerate() {
-            let end = &mut ends[class as usize];
-            order[*end as usize] = ray as u16;
-            *end += 1;
-        }
+        let Sorted { order, ends } =
+            Sorted::<WINDOW, { Class::INVALID + 1 }>::by_key(rays, Class::index);
         let mut start = 0;
         for &end in &ends[..Class::INVALID] {
             for members in order[start as usize..end as usize].chunks(R) {

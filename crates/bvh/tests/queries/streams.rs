@@ -12,8 +12,13 @@ use crate::oracle::closest_hit_of_all;
 use crate::random::Random;
 use crate::runner::{Holes, aimed, same, trials};
 
-/// Lengths around the number of rays in flight, packets and windows.
-const LENGTHS: [usize; 15] = [0, 1, 2, 3, 7, 16, 31, 32, 33, 63, 65, 255, 256, 257, 700];
+/// Lengths around the number of rays in flight, packets and windows, and around as many as make it worth while to test all
+/// triangles.
+const LENGTHS: [usize; 18] = [
+    0, 1, 2, 3, 7, 16, 31, 32, 33, 63, 65, 255, 256, 257, 511, 512, 700, RAYS,
+];
+/// More than are sorted together.
+const RAYS: usize = 1300;
 
 /// Holds the kernels against the expected hits, for streams of all lengths.
 #[inline(always)]
@@ -54,7 +59,7 @@ fn compare<S, const N: usize, const P: usize, F: HitFilter>(
 /// Every other ray through the mesh; the rest NaN, infinite, without direction, or with an empty interval; a few with an
 /// interval that ends before it begins to count.
 fn mixed_rays(mesh: &Mesh, random: &mut Random) -> Vec<Ray> {
-    (0..700)
+    (0..RAYS)
         .map(|i| {
             let mut ray = aimed(random.in_cube(1.5), mesh.edge_point(random));
             match i % 16 {
@@ -103,11 +108,11 @@ fn check(mesh: &Mesh, rays: &[Ray]) -> usize {
     all.iter().filter(|hit| hit.is_hit()).count()
 }
 
-/// None, one, a single leaf, a leaf of several packets' worth, a tree.
+/// None, one, a single leaf, a leaf of several packets' worth, as many as are all tested, one more, a tree.
 #[test]
 fn hierarchies_of_every_size() {
     let mut random = Random::new(160);
-    for count in [1, 2, 8, 20, trials(500)] {
+    for count in [1, 2, 8, 20, 85, 86, trials(500)] {
         let mesh = soup(count, 0.5, &mut random).marked(&mut random);
         let rays = mixed_rays(&mesh, &mut random);
         assert!(check(&mesh, &rays) > rays.len() / 8, "{count} triangles");
@@ -123,14 +128,16 @@ fn hierarchies_of_every_size() {
 #[test]
 fn leaves_of_many_packets() {
     let mut random = Random::new(161);
-    let mut mesh = Mesh::default();
     let few = soup(3, 0.8, &mut random);
-    for i in 0..200 {
-        mesh.push(few.vertices((i * 7) % 3));
+    for count in [70, 200] {
+        let mut mesh = Mesh::default();
+        for i in 0..count {
+            mesh.push(few.vertices((i * 7) % 3));
+        }
+        let mesh = mesh.marked(&mut random);
+        let rays = mixed_rays(&mesh, &mut random);
+        assert!(check(&mesh, &rays) > rays.len() / 8);
     }
-    let mesh = mesh.marked(&mut random);
-    let rays = mixed_rays(&mesh, &mut random);
-    assert!(check(&mesh, &rays) > rays.len() / 8);
 }
 
 /// Rays that start at vertices of several triangles, and hit them at a distance of zero of either sign.
