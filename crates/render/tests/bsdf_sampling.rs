@@ -1,5 +1,7 @@
 //! BSDF sampling against its own density: χ² in slopes of the half vector, so that every lobe is resolved
 //! (hard case M-02), weights against value ÷ density (M-03), and the mass of the density.
+//!
+//! Longer than 400 lines: the judge, and one case for each lobe.
 
 use residual_render::bsdf::{Anisotropic, Bsdf, Coated, Diffuse, Glossy, Mix, Phong, Sheen, Sum};
 use residual_render::domain::{Buffers, Precise, Scalar};

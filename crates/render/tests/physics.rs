@@ -5,6 +5,7 @@ mod adaptive_sampling;
 mod bsdf_albedo;
 mod bsdf_furnace;
 mod bsdf_physics;
+mod bsdf_reciprocity;
 mod bsdf_sampling;
 mod bsdf_transmission;
 mod domain;

@@ -7,6 +7,12 @@
 //!
 //! Space: right-handed, +Y up, metres, as glTF. Colours are linear Rec. 709 unless an image says sRGB.
 
+mod inputs;
+mod metallic_roughness;
+
+pub use inputs::{ColorInput, NormalMap, ScalarInput, TextureUse, UvTransform};
+pub use metallic_roughness::{Attenuation, MetallicRoughness};
+
 use glam::{Affine3A, DVec3, Quat, Vec2, Vec3, Vec4};
 
 use crate::effect::Effect;
@@ -133,47 +139,6 @@ pub struct TextureDesc {
     pub filter: Filter,
 }
 
-/// Affine map of texture coordinates (KHR_texture_transform): `uv' = matrix · (u, v, 1)`, two rows.
-pub type UvTransform = [[f32; 3]; 2];
-
-/// A use of a texture.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TextureUse {
-    /// Index into [`SceneDesc::textures`].
-    pub texture: usize,
-    /// 0 for `TEXCOORD_0`, 1 for `TEXCOORD_1`.
-    pub uv_set: usize,
-    /// `None` is the identity.
-    pub transform: Option<UvTransform>,
-}
-
-/// A colour: a factor, times a texture's sRGB-encoded RGB where there is one.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ColorInput {
-    /// Linear factor.
-    pub factor: [f32; 3],
-    /// Colour texture; [`Texels::Rgba8`] and [`Texels::Rgba16`] are decoded from sRGB.
-    pub texture: Option<TextureUse>,
-}
-
-/// A number: a factor, times one channel of a texture where there is one.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ScalarInput {
-    /// Factor.
-    pub factor: f32,
-    /// Texture and the channel (0 red … 3 alpha) that is read, linear.
-    pub texture: Option<(TextureUse, usize)>,
-}
-
-/// A tangent-space normal map.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NormalMap {
-    /// Texture, read as linear RGB, `2·rgb − 1`.
-    pub texture: TextureUse,
-    /// Factor on x and y.
-    pub scale: f32,
-}
-
 /// What alpha does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AlphaMode {
@@ -206,6 +171,10 @@ pub struct MaterialDesc {
 
 /// How a surface scatters light.
 #[derive(Debug, Clone, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a scene has few materials, and most are of the largest kind"
+)]
 pub enum SurfaceDesc {
     /// glTF 2.0, appendix B, with the extensions that it has fields for.
     MetallicRoughness(MetallicRoughness),
@@ -237,119 +206,6 @@ pub enum SurfaceDesc {
         /// Tint of transmitted light.
         transmittance: [f32; 3],
     },
-}
-
-/// glTF's metallic-roughness surface with its layers. What a factor of 0 leaves out is not there.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MetallicRoughness {
-    /// Base colour; multiplied by `COLOR_0` where the mesh has one.
-    pub base_color: ColorInput,
-    /// 0 dielectric … 1 metal (blue channel).
-    pub metallic: ScalarInput,
-    /// Perceptual roughness, α = roughness² (green channel).
-    pub roughness: ScalarInput,
-    /// Index of refraction of the dielectric, 1.5 by default. 0 means "Fresnel 1" (KHR_materials_ior).
-    pub ior: f32,
-    /// KHR_materials_specular: strength (alpha channel).
-    pub specular: ScalarInput,
-    /// KHR_materials_specular: colour of the reflection at normal incidence.
-    pub specular_color: ColorInput,
-    /// KHR_materials_transmission (red channel).
-    pub transmission: ScalarInput,
-    /// KHR_materials_volume with `thicknessFactor` > 0: transmitted rays refract into a solid.
-    /// Without it the surface is thin: what is transmitted goes straight on.
-    pub solid: bool,
-    /// KHR_materials_volume: what a solid absorbs, if anything.
-    pub attenuation: Option<Attenuation>,
-    /// KHR_materials_dispersion: 20 over the Abbe number; 0 bends all wavelengths alike.
-    pub dispersion: f32,
-    /// KHR_materials_diffuse_transmission: the share of the diffuse light that passes (alpha channel).
-    pub diffuse_transmission: ScalarInput,
-    /// KHR_materials_diffuse_transmission: its colour.
-    pub diffuse_transmission_color: ColorInput,
-    /// KHR_materials_anisotropy: how much rougher the surface is along its direction (blue channel). Its texture's red and
-    /// green are that direction, 2·rg − 1 along tangent and bitangent.
-    pub anisotropy: ScalarInput,
-    /// KHR_materials_anisotropy: angle from the tangent, or from the texture's direction, counter-clockwise in radians.
-    pub anisotropy_rotation: f32,
-    /// KHR_materials_iridescence: how much of the surface is under a thin film.
-    pub iridescence: ScalarInput,
-    /// KHR_materials_iridescence: the film's index of refraction, at least 1.
-    pub iridescence_ior: f32,
-    /// KHR_materials_iridescence: the film's thickness in nanometres where the texture (green channel) is 0.
-    pub iridescence_minimum: f32,
-    /// KHR_materials_iridescence: the film's thickness in nanometres where the texture is 1, or everywhere.
-    pub iridescence_thickness: ScalarInput,
-    /// KHR_materials_sheen: colour.
-    pub sheen_color: ColorInput,
-    /// KHR_materials_sheen: roughness (alpha channel).
-    pub sheen_roughness: ScalarInput,
-    /// KHR_materials_clearcoat: strength (red channel).
-    pub clearcoat: ScalarInput,
-    /// KHR_materials_clearcoat: roughness (green channel).
-    pub clearcoat_roughness: ScalarInput,
-    /// KHR_materials_clearcoat: normal map of the coat; without it the coat has the normals of the mesh.
-    pub clearcoat_normal: Option<NormalMap>,
-}
-
-/// What a body absorbs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Attenuation {
-    /// What is left of white light after the distance, in (0, 1].
-    pub color: [f32; 3],
-    /// The distance in metres, positive.
-    pub distance: f32,
-}
-
-impl Default for MetallicRoughness {
-    /// glTF's defaults: a white metal of roughness 1, without any layer.
-    fn default() -> Self {
-        Self {
-            base_color: ColorInput::constant([1.0; 3]),
-            metallic: ScalarInput::constant(1.0),
-            roughness: ScalarInput::constant(1.0),
-            ior: 1.5,
-            specular: ScalarInput::constant(1.0),
-            specular_color: ColorInput::constant([1.0; 3]),
-            transmission: ScalarInput::constant(0.0),
-            solid: false,
-            attenuation: None,
-            dispersion: 0.0,
-            diffuse_transmission: ScalarInput::constant(0.0),
-            diffuse_transmission_color: ColorInput::constant([1.0; 3]),
-            anisotropy: ScalarInput::constant(0.0),
-            anisotropy_rotation: 0.0,
-            iridescence: ScalarInput::constant(0.0),
-            iridescence_ior: 1.3,
-            iridescence_minimum: 100.0,
-            iridescence_thickness: ScalarInput::constant(400.0),
-            sheen_color: ColorInput::constant([0.0; 3]),
-            sheen_roughness: ScalarInput::constant(0.0),
-            clearcoat: ScalarInput::constant(0.0),
-            clearcoat_roughness: ScalarInput::constant(0.0),
-            clearcoat_normal: None,
-        }
-    }
-}
-
-impl ColorInput {
-    /// A colour without a texture.
-    pub fn constant(factor: [f32; 3]) -> Self {
-        Self {
-            factor,
-            texture: None,
-        }
-    }
-}
-
-impl ScalarInput {
-    /// A number without a texture.
-    pub fn constant(factor: f32) -> Self {
-        Self {
-            factor,
-            texture: None,
-        }
-    }
 }
 
 /// OBJ's Lambert plus Phong surface.

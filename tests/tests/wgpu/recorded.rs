@@ -153,7 +153,7 @@ struct Path {
     pdf: u32,
     pixel: u32,
     index: u32,
-    depth: u32,
+    state: u32,
 }
 
 fn ray(org: [u32; 3], dir: [u32; 3], tmax: f32) -> Ray {
@@ -227,7 +227,7 @@ impl Recording<'_> {
             pdf: 0,
             pixel: start.word("pixel"),
             index: sample,
-            depth: 1,
+            state: 1,
         }
     }
 
@@ -262,7 +262,7 @@ impl Recording<'_> {
             "pdf" => [path.pdf; 3],
             "pixel" => [path.pixel; 3],
             "index" => [path.index; 3],
-            "depth" => [path.depth; 3],
+            "state" => [path.state; 3],
             "max_depth" => [self.options.max_depth; 3],
             "roulette_from" => [self.options.roulette_from; 3],
             "reach" => [self.options.reach.to_bits(); 3],
@@ -305,7 +305,7 @@ impl Recording<'_> {
             if let Some(seen) = step.words("seen") {
                 add(&mut numbers, seen);
             }
-            if path.depth == 1 {
+            if path.state == 1 {
                 for layer in self.layers.of_samples() {
                     let value = step.words(layer.name()).expect("a layer");
                     for (number, &bits) in
@@ -336,7 +336,7 @@ impl Recording<'_> {
                 dir: step.vector("bounce_dir"),
                 throughput: step.vector("bounce_throughput"),
                 pdf: step.word("bounce_pdf"),
-                depth: path.depth + 1,
+                state: step.word("bounce_state"),
                 ..path
             };
         }

@@ -12,8 +12,9 @@ use crate::math::spectrum::{color_of, wavelength_at};
 use crate::sampler::Sampler;
 use crate::surface::Surface;
 
-/// The pair of random numbers, of those of vertex 0, whose first chooses the wavelength.
-const WAVELENGTH: u32 = 2;
+/// The pair of random numbers, of those of vertex 0, whose first chooses the wavelength: the last one, since the first are for
+/// the place in the pixel, directions of ambient occlusion, and the lens.
+const WAVELENGTH: u32 = 3;
 const _: () = assert!(WAVELENGTH < PAIRS);
 
 /// A tracer in a scene with dispersive surfaces (KHR_materials_dispersion). The wavelength of a sample is chosen with its
