@@ -90,6 +90,7 @@ fn scene(
         } else {
             vec![area]
         },
+        light_tree: None,
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),
