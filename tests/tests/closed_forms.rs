@@ -92,6 +92,7 @@ fn scene(
         } else {
             vec![area]
         },
+        light_tree: None,
         camera: CameraNode::Perspective,
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),
