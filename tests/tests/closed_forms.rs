@@ -97,7 +97,6 @@ fn scene(
         sampler: AnySampler::Sobol,
         tracer: TracerNode::default(),
         between: Between::default(),
-        light_tree: None,
         layers: Layers::NONE,
     };
     (structure, data)

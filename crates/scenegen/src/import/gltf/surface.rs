@@ -159,7 +159,7 @@ fn volume(members: &mut Members<'_, '_>, volume: Option<&Volume>) -> (bool, Opti
     if color == [1.0; 3] || distance == f32::INFINITY {
         return (thickness > 0.0, None);
     }
-    if !(distance > 0.0) {
+    if distance.is_nan() || distance <= 0.0 {
         members.warn(format!(
             "attenuationDistance {distance} is not positive; nothing is absorbed"
         ));
