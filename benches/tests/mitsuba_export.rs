@@ -194,11 +194,16 @@ fn metals_coats_and_glass_have_counterparts() {
             1 => surface.specular.factor = 1.0,
             2 => {
                 surface.transmission.factor = 1.0;
+                surface.roughness.factor = 0.0;
                 surface.solid = true;
                 surface.ior = 1.25;
             }
             _ => (),
         }
+    }
+    let mut frosted = scene.clone();
+    if let SurfaceDesc::MetallicRoughness(surface) = &mut frosted.materials[2].surface {
+        surface.roughness.factor = 0.5;
     }
     let (_, scene, _, _) = exported(&scene);
     let [metal, coat] = scene.plugins("bsdf", "principled")[..] else {
@@ -215,6 +220,13 @@ fn metals_coats_and_glass_have_counterparts() {
     assert_eq!(glass.property("int_ior"), "1.25");
     // Light goes through it from either side by itself.
     assert_eq!(scene.plugins("bsdf", "twosided").len(), 3);
+
+    let (_, frosted, _, _) = exported(&frosted);
+    let [glass] = frosted.plugins("bsdf", "roughdielectric")[..] else {
+        panic!("{frosted:?}");
+    };
+    let properties = ["alpha", "int_ior", "distribution"].map(|name| glass.property(name));
+    assert_eq!(properties, ["0.25", "1.25", "ggx"]);
 }
 
 #[test]

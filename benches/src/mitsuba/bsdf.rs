@@ -120,8 +120,22 @@ impl Inputs<'_> {
             BsdfNode::Dielectric {
                 interface: AnyInterface::Thin,
                 ..
+            }
+            | BsdfNode::RoughDielectric {
+                interface: AnyInterface::Thin,
+                ..
             } => Err("a thin dielectric".to_owned()),
-            BsdfNode::RoughDielectric { .. } => Err("a rough dielectric".to_owned()),
+            BsdfNode::RoughDielectric {
+                transmittance,
+                ior,
+                roughness,
+                interface: AnyInterface::Solid,
+            } => Ok(Element::plugin("bsdf", "roughdielectric")
+                .string("distribution", "ggx")
+                .float("alpha", self.roughness(roughness)?.powi(2))
+                .float("int_ior", self.number(*ior)?)
+                .float("ext_ior", 1)
+                .rgb("specular_transmittance", self.color(*transmittance)?)),
             BsdfNode::DiffuseTransmission { .. } => Err("diffuse transmission".to_owned()),
             BsdfNode::Sheen { .. } => Err("sheen".to_owned()),
             BsdfNode::OwnNormal { .. } => Err("a coat with its own normals".to_owned()),
