@@ -668,14 +668,16 @@ fn attributes() -> Vec<Tiny> {
                 scene
             },
         ),
-        varnished("smooth_coat", |texture, _| MaterialDesc {
-            normal_map: Some(NormalMap {
-                texture,
-                scale: 0.5,
-            }),
-            ..surface("varnish", varnish(None))
+        varnished("smooth_coat", Effect::NormalMaps, |texture, _| {
+            MaterialDesc {
+                normal_map: Some(NormalMap {
+                    texture,
+                    scale: 0.5,
+                }),
+                ..surface("varnish", varnish(None))
+            }
         }),
-        varnished("bumpy_coat", |texture, scale| {
+        varnished("bumpy_coat", Effect::CoatNormalMaps, |texture, scale| {
             surface("orange peel", varnish(Some(NormalMap { texture, scale })))
         }),
     ]
@@ -692,12 +694,16 @@ fn varnish(clearcoat_normal: Option<NormalMap>) -> MetallicRoughness {
 }
 
 /// Sheets whose base or coat has bumps.
-fn varnished(name: &'static str, material: impl FnOnce(TextureUse, f32) -> MaterialDesc) -> Tiny {
+fn varnished(
+    name: &'static str,
+    bumps: Effect,
+    material: impl FnOnce(TextureUse, f32) -> MaterialDesc,
+) -> Tiny {
     let effects = [
         &TEXTURE[..],
         &[
             Effect::LinearTexels,
-            Effect::NormalMaps,
+            bumps,
             Effect::MetallicReflection,
             Effect::ClearCoat,
         ],

@@ -42,6 +42,7 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("VertexColor", &[Effect::VertexColors]),
     ("normals: true", &[Effect::SmoothNormals]),
     ("decode_normal", &[Effect::NormalMaps]),
+    ("MappedFrame {", &[Effect::CoatNormalMaps]),
     (
         "has_alpha_tests",
         &[Effect::AlphaMasks, Effect::AlphaBlending],

@@ -26,6 +26,7 @@ fn effects_can_be_taken_out() {
             // A scene without lights gets a sky; textures have other uses, which are effects of their own.
             let others = [
                 Effect::NormalMaps,
+                Effect::CoatNormalMaps,
                 Effect::TexturedEmission,
                 Effect::AlphaMasks,
                 Effect::AlphaBlending,

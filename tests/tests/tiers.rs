@@ -9,7 +9,7 @@ use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 use residual_tests::pictures::{first_difference, mean};
-use residual_tests::{Look, Parts, Prepared, fixtures, read_scene, scenes};
+use residual_tests::{Look, Parts, Prepared, fixtures, read_scene, scenes, tiny};
 
 /// Neither a multiple of a tile nor of a lane count.
 const SIZE: [u32; 2] = [75, 52];
@@ -210,17 +210,22 @@ fn textures_have_alpha_and_single_sides() {
     assert!(plan.data.triangle_count() <= Parts::MOST);
 }
 
-/// An effect that no fixture calls for would be compiled by no test.
+/// An effect that neither a fixture nor a tiny scene, of which `goldens.rs` compiles each, calls for would be compiled by no
+/// test.
 #[test]
-fn fixtures_call_for_every_effect() {
+fn test_scenes_call_for_every_effect() {
     let scenes = [fixtures::room(), fixtures::textures(), fixtures::lights()];
-    let effects: Vec<_> = scenes
+    let fixtures = scenes
         .iter()
-        .map(|scene| Effects::of(&planned(scene, Binding::Structure)))
+        .map(|scene| planned(scene, Binding::Structure));
+    let tiny = tiny::all().into_iter().map(|tiny| tiny.plan());
+    let effects: Vec<_> = fixtures
+        .chain(tiny)
+        .map(|plan| Effects::of(&plan))
         .collect();
     let missing: Vec<_> = Effect::ALL
         .iter()
         .filter(|effect| effects.iter().all(|e| e.reasons(**effect).is_empty()))
         .collect();
-    assert!(missing.is_empty(), "no fixture calls for {missing:?}");
+    assert!(missing.is_empty(), "no scene calls for {missing:?}");
 }

@@ -31,7 +31,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::TextureTransforms => "coordinates as they are",
         Effect::VertexColors => "white",
         Effect::SmoothNormals => "flat triangles",
-        Effect::NormalMaps => "as the mesh is",
+        Effect::NormalMaps | Effect::CoatNormalMaps => "as the mesh is",
         Effect::AlphaMasks | Effect::AlphaBlending => "opaque",
         Effect::BackFaceCulling => "seen from both sides",
         Effect::EmittingSurfaces => "dark",
@@ -149,6 +149,9 @@ fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
         (Effect::Dispersion, SurfaceDesc::MetallicRoughness(surface)) => surface.dispersion = 0.0,
         (Effect::DiffuseTransmission, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.diffuse_transmission = number(0.0);
+        }
+        (Effect::CoatNormalMaps, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.clearcoat_normal = None;
         }
         (Effect::ClearCoat, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.clearcoat = number(0.0);

@@ -55,6 +55,7 @@ effects! {
     VertexColors = "vertex colours",
     SmoothNormals = "smooth normals",
     NormalMaps = "normal maps",
+    CoatNormalMaps = "normal maps of clear coats",
     AlphaMasks = "alpha masks",
     AlphaBlending = "alpha blending",
     BackFaceCulling = "back-face culling",

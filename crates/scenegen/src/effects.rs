@@ -126,7 +126,7 @@ impl Effects {
                 coat => (coat, None),
             };
             if let Some(LayerFrameNode::MappedFrame { .. }) = normal {
-                self.add(Effect::NormalMaps, place);
+                self.add(Effect::CoatNormalMaps, place);
             }
             self.add(coat_effect(coat, base), place);
             if let BsdfNode::Glossy { fresnel, roughness } = coat {

@@ -14,7 +14,7 @@ use crate::print::print;
 const HEADER: &str = "\
 // Printed by residual-wgsl from a scene's structure. Directions are world space. A path is its ray (`org`, `dir`, a unit
 // vector), `throughput`, the density `pdf` of its direction, the sample that it belongs to (`pixel`, a hash, and `index`)
-// and its `depth`, which is 1 for the ray from the camera.
+// and its `state`, which is 1 for the ray from the camera.
 ";
 
 /// A text of WGSL while it is put together.

@@ -142,6 +142,7 @@ fn a_renderer_for_everything_gives_the_same_bits() {
         missing,
         [
             &Effect::BackFaceCulling,
+            &Effect::LightTree,
             &Effect::DepthOfField,
             &Effect::OrthographicCamera,
             &Effect::PanoramicCamera

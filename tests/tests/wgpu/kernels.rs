@@ -266,6 +266,6 @@ fn dead_code_is_found() {
         assert_eq!(with(format!("{text}\n{addition}")), [what]);
     }
     let entry = "    let path = paths[slot];\n";
-    let idle = format!("{entry}    let idle = path.depth * 3u;\n");
+    let idle = format!("{entry}    let idle = path.state * 3u;\n");
     assert_eq!(with(text.replace(entry, &idle)), ["let idle"]);
 }
