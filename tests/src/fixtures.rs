@@ -10,18 +10,12 @@ pub use crate::builder::Builder;
 
 /// A colour without a texture.
 pub fn color(factor: [f32; 3]) -> ColorInput {
-    ColorInput {
-        factor,
-        texture: None,
-    }
+    ColorInput::constant(factor)
 }
 
 /// A number without a texture.
 pub fn scalar(factor: f32) -> ScalarInput {
-    ScalarInput {
-        factor,
-        texture: None,
-    }
+    ScalarInput::constant(factor)
 }
 
 /// glTF's surface with its defaults, but for base colour, metallic and roughness.

@@ -160,6 +160,8 @@ const COMMON: &[&str] = &[
     // Constants and parameters.
     "render/src/texture/mod.rs",
     "render/src/texture/params.rs",
+    // What tracers around others leave to them.
+    "render/src/tracer/forward.rs",
     "render/src/tracer/mod.rs",
     "render/src/tracer/mis.rs",
     "render/src/tracer/path.rs",

@@ -127,76 +127,62 @@ fn change(effect: Effect, material: &mut MaterialDesc, means: &mut Means) {
 fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
     match (effect, &mut *surface) {
         (Effect::DielectricCoat, SurfaceDesc::MetallicRoughness(surface)) => {
-            surface.specular = number(0.0);
+            surface.specular = ScalarInput::constant(0.0);
         }
         // A metal's reflection is all there is of it: what stays is its colour, and no coat instead.
         (Effect::MetallicReflection, SurfaceDesc::MetallicRoughness(surface)) => {
             if surface.metallic.factor == 1.0 && surface.metallic.texture.is_none() {
-                surface.specular = number(0.0);
+                surface.specular = ScalarInput::constant(0.0);
             }
-            surface.metallic = number(0.0);
+            surface.metallic = ScalarInput::constant(0.0);
         }
         (
             Effect::ThinTransmission | Effect::Refraction,
             SurfaceDesc::MetallicRoughness(surface),
-        ) => surface.transmission = number(0.0),
+        ) => surface.transmission = ScalarInput::constant(0.0),
         (Effect::RoughTransmission, SurfaceDesc::MetallicRoughness(surface)) => {
-            surface.roughness = number(0.0);
+            surface.roughness = ScalarInput::constant(0.0);
         }
         (Effect::Absorption, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.attenuation = None;
         }
         (Effect::Dispersion, SurfaceDesc::MetallicRoughness(surface)) => surface.dispersion = 0.0,
         (Effect::DiffuseTransmission, SurfaceDesc::MetallicRoughness(surface)) => {
-            surface.diffuse_transmission = number(0.0);
+            surface.diffuse_transmission = ScalarInput::constant(0.0);
         }
         (Effect::CoatNormalMaps, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.clearcoat_normal = None;
         }
         (Effect::ClearCoat, SurfaceDesc::MetallicRoughness(surface)) => {
-            surface.clearcoat = number(0.0);
+            surface.clearcoat = ScalarInput::constant(0.0);
         }
         (Effect::Sheen, SurfaceDesc::MetallicRoughness(surface)) => {
-            surface.sheen_color = plain([0.0; 3]);
+            surface.sheen_color = ColorInput::constant([0.0; 3]);
         }
         (Effect::Anisotropy, SurfaceDesc::MetallicRoughness(surface)) => {
-            surface.anisotropy = number(0.0);
+            surface.anisotropy = ScalarInput::constant(0.0);
         }
         (Effect::Iridescence, SurfaceDesc::MetallicRoughness(surface)) => {
-            surface.iridescence = number(0.0);
+            surface.iridescence = ScalarInput::constant(0.0);
         }
         (Effect::PhongReflection, SurfaceDesc::Phong(surface)) => {
-            surface.specular = plain([0.0; 3]);
+            surface.specular = ColorInput::constant([0.0; 3]);
         }
         (Effect::MirrorReflection, SurfaceDesc::Mirror { reflectance, .. }) => {
-            *reflectance = plain([0.0; 3]);
+            *reflectance = ColorInput::constant([0.0; 3]);
         }
         (Effect::ProceduralTextures, SurfaceDesc::Checkerboard { even, odd, .. }) => {
             let mean = [0, 1, 2].map(|k| 0.5 * (even.factor[k] + odd.factor[k]));
-            (*even, *odd) = (plain(mean), plain(mean));
+            (*even, *odd) = (ColorInput::constant(mean), ColorInput::constant(mean));
         }
         (Effect::Refraction, SurfaceDesc::Dielectric { transmittance, .. }) => {
             *surface = SurfaceDesc::Phong(PhongSurface {
-                diffuse: plain(*transmittance),
-                specular: plain([0.0; 3]),
-                exponent: number(0.0),
+                diffuse: ColorInput::constant(*transmittance),
+                specular: ColorInput::constant([0.0; 3]),
+                exponent: ScalarInput::constant(0.0),
             });
         }
         _ => {}
-    }
-}
-
-fn number(factor: f32) -> ScalarInput {
-    ScalarInput {
-        factor,
-        texture: None,
-    }
-}
-
-fn plain(factor: [f32; 3]) -> ColorInput {
-    ColorInput {
-        factor,
-        texture: None,
     }
 }
 

@@ -3,6 +3,7 @@
 use super::fresnel::{Fresnel, SchlickCurve, schlick_weight};
 use crate::domain::Domain;
 use crate::math::elementary::{exp2, sincos_turns};
+use crate::math::spectrum::rgb_of_xyz;
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
@@ -37,13 +38,6 @@ const SENSITIVITIES: [[f64; 3]; 4] = [
 ];
 /// What scales them to a white of 1.
 const WHITE: f64 = 1.0685e-7;
-/// From XYZ to linear Rec. 709, by rows.
-const RGB_OF_XYZ: [[f64; 3]; 3] = [
-    [3.240_454_2, -1.537_138_5, -0.498_531_4],
-    [-0.969_266, 1.876_010_8, 0.041_556],
-    [0.055_643_4, -0.204_025_9, 1.057_225_2],
-];
-
 /// Reflectance at normal incidence between two indices of refraction.
 #[inline(always)]
 fn at_normal<D: Domain>(_: D, beyond: D::F, here: D::F) -> D::F {
@@ -73,11 +67,7 @@ fn sensitivity<D: Domain>(d: D, path: D::F, half_turns: Vec3<D::F>) -> Color<D::
         lobe(y, half_turns.y),
         lobe(z, half_turns.z),
     );
-    let [r, g, b] = RGB_OF_XYZ.map(|row| {
-        let [x, y, z] = row.map(|value| d.lit(value));
-        d.fma(x, xyz.x, d.fma(y, xyz.y, z * xyz.z))
-    });
-    vec3(r, g, b)
+    rgb_of_xyz(d, xyz)
 }
 
 impl<N, G, W, I, T> ThinFilm<N, G, W, I, T> {

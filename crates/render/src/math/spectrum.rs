@@ -1,8 +1,8 @@
 //! Wavelengths as colours.
 
-use super::Color;
 use super::elementary::exp2;
 use super::vec3::vec3;
+use super::{Color, Vec3};
 use crate::domain::Domain;
 
 /// The wavelengths that are sampled, in nanometres.
@@ -28,13 +28,14 @@ const Z: [[f64; 4]; 2] = [
     [0.681, 459.0, 0.0385, 0.0725],
 ];
 
-/// From XYZ to linear Rec. 709, by rows, and the inverse of the mean of each channel over the visible wavelengths, where
-/// negative values count as 0. A test computes the means again.
+/// From XYZ to linear Rec. 709, by rows.
 const RGB_OF_XYZ: [[f64; 3]; 3] = [
     [3.240_454_2, -1.537_138_5, -0.498_531_4],
     [-0.969_266, 1.876_010_8, 0.041_556],
     [0.055_643_4, -0.204_025_9, 1.057_225_2],
 ];
+/// The inverse of the mean of each channel over the visible wavelengths, where negative values count as 0. A test computes the
+/// means again.
 const WHITE: [f64; 3] = [1.705113, 2.599648, 2.757881];
 
 /// The wavelength that a random number in [0, 1) chooses, in nanometres; all are equally likely.
@@ -48,16 +49,23 @@ pub fn wavelength_at<D: Domain>(d: D, u: D::F) -> D::F {
 /// that no display can show are clipped to those that it can.
 #[inline(always)]
 pub fn color_of<D: Domain>(d: D, wavelength: D::F) -> Color<D::F> {
-    let [x, y, z] = [
+    let xyz = vec3(
         sum(d, wavelength, &X),
         sum(d, wavelength, &Y),
         sum(d, wavelength, &Z),
-    ];
-    let channel = |[a, b, c]: [f64; 3], white: f64| {
-        let value = d.fma(d.lit(a), x, d.fma(d.lit(b), y, d.lit(c) * z));
-        d.max(value, d.lit(0.0)) * d.lit(white)
-    };
-    let [r, g, b] = [0, 1, 2].map(|k| channel(RGB_OF_XYZ[k], WHITE[k]));
+    );
+    let [r, g, b] = WHITE;
+    let white = vec3(d.lit(r), d.lit(g), d.lit(b));
+    rgb_of_xyz(d, xyz).map(|c| d.max(c, d.lit(0.0))) * white
+}
+
+/// A colour in CIE XYZ as linear Rec. 709; negative where no display can show it.
+#[inline(always)]
+pub fn rgb_of_xyz<D: Domain>(d: D, xyz: Vec3<D::F>) -> Color<D::F> {
+    let [r, g, b] = RGB_OF_XYZ.map(|row| {
+        let [x, y, z] = row.map(|value| d.lit(value));
+        d.fma(x, xyz.x, d.fma(y, xyz.y, z * xyz.z))
+    });
     vec3(r, g, b)
 }
 

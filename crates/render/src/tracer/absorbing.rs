@@ -1,5 +1,6 @@
 //! Absorption in bodies: what is lost between two surfaces.
 
+use super::forward::forward;
 use super::{Bounce, CostMap, Path, Shadow, Tracer, Vertex};
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -52,15 +53,9 @@ fn beyond<D: Domain, B>(d: D, path: &Path<D>, vertex: &Vertex<'_, D, B>, dir: Ve
 }
 
 impl<D: Domain, T: Tracer<D>> Tracer<D> for Absorbing<T> {
-    #[inline(always)]
-    fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
-        self.tracer.on_emit(d, camera, pixel, sample)
-    }
-
-    #[inline(always)]
-    fn wavelength(&self, d: D, path: &Path<D>) -> Option<D::F> {
-        self.tracer.wavelength(d, path)
-    }
+    forward!(
+        on_emit, wavelength, on_hit, on_miss, goes_on, layers, cost_map
+    );
 
     #[inline(always)]
     fn arrive(&self, d: D, path: &Path<D>, surface: &Surface<D>) -> Path<D> {
@@ -71,32 +66,6 @@ impl<D: Domain, T: Tracer<D>> Tracer<D> for Absorbing<T> {
             throughput: path.throughput * share,
             ..path
         }
-    }
-
-    #[inline(always)]
-    fn on_hit<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-        lights: &L,
-    ) -> Option<Color<D::F>> {
-        self.tracer.on_hit(d, path, vertex, lights)
-    }
-
-    #[inline(always)]
-    fn on_miss<L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        lights: &L,
-    ) -> Option<Color<D::F>> {
-        self.tracer.on_miss(d, path, lights)
-    }
-
-    #[inline(always)]
-    fn goes_on(&self, d: D, path: &Path<D>) -> D::M {
-        self.tracer.goes_on(d, path)
     }
 
     #[inline(always)]
@@ -129,15 +98,5 @@ impl<D: Domain, T: Tracer<D>> Tracer<D> for Absorbing<T> {
         let medium = beyond(d, path, vertex, bounce.path.ray.dir);
         bounce.path.state = bounce.path.state.in_medium(d, medium);
         Some(bounce)
-    }
-
-    #[inline(always)]
-    fn layers(&self) -> Layers {
-        self.tracer.layers()
-    }
-
-    #[inline(always)]
-    fn cost_map(&self) -> Option<CostMap> {
-        self.tracer.cost_map()
     }
 }

@@ -1,5 +1,6 @@
 //! Ambient occlusion: how much of a white sky a matte surface would see, occluders beyond a distance left out.
 
+use super::camera_pairs::OCCLUSION;
 use super::{Path, Settings, Shadow, Tracer, Vertex, consistent};
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -9,9 +10,6 @@ use crate::math::warp::cosine_hemisphere;
 use crate::math::{Color, Vec3};
 use crate::sampler::Sampler;
 use crate::surface::PathRay;
-
-/// The pair of random numbers for the direction; the camera has pairs 0 and 2.
-const DIRECTION: u32 = 1;
 
 /// The tracer of ambient occlusion: from 0, where everything around is near, to 1, also where nothing is seen.
 #[derive(Clone, Copy)]
@@ -54,7 +52,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for AmbientOcclusion<D, S> {
         _: &L,
     ) -> Option<Shadow<D>> {
         let surface = vertex.surface;
-        let local = cosine_hemisphere(d, self.sampler.pair(d, path.key, d.uint(DIRECTION)));
+        let local = cosine_hemisphere(d, self.sampler.pair(d, path.key, d.uint(OCCLUSION)));
         let dir: Vec3<D::F> = surface.frame.to_world(local).normalize(d);
         Some(Shadow {
             ray: PathRay {

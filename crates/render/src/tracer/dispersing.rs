@@ -1,6 +1,7 @@
 //! Dispersion: paths that meet a surface which bends wavelengths differently are of one wavelength from there on.
 
-use super::path::PAIRS;
+use super::camera_pairs::WAVELENGTH;
+use super::forward::forward;
 use super::{Bounce, CostMap, Path, Shadow, Tracer, Vertex};
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -11,11 +12,6 @@ use crate::math::Color;
 use crate::math::spectrum::{color_of, wavelength_at};
 use crate::sampler::Sampler;
 use crate::surface::Surface;
-
-/// The pair of random numbers, of those of vertex 0, whose first chooses the wavelength: the last one, since the first are for
-/// the place in the pixel, directions of ambient occlusion, and the lens.
-const WAVELENGTH: u32 = 3;
-const _: () = assert!(WAVELENGTH < PAIRS);
 
 /// A tracer in a scene with dispersive surfaces (KHR_materials_dispersion). The wavelength of a sample is chosen with its
 /// other random numbers; a path becomes of it at the first dispersive surface that it meets, whose colour then weighs it.
@@ -49,45 +45,11 @@ impl<T, S> Dispersing<T, S> {
 }
 
 impl<D: Domain, T: Tracer<D>, S: Sampler<D>> Tracer<D> for Dispersing<T, S> {
-    #[inline(always)]
-    fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
-        self.tracer.on_emit(d, camera, pixel, sample)
-    }
+    forward!(on_emit, arrive, on_hit, on_miss, goes_on, layers, cost_map);
 
     #[inline(always)]
     fn wavelength(&self, d: D, path: &Path<D>) -> Option<D::F> {
         Some(self.chosen(d, path))
-    }
-
-    #[inline(always)]
-    fn arrive(&self, d: D, path: &Path<D>, surface: &Surface<D>) -> Path<D> {
-        self.tracer.arrive(d, path, surface)
-    }
-
-    #[inline(always)]
-    fn on_hit<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-        lights: &L,
-    ) -> Option<Color<D::F>> {
-        self.tracer.on_hit(d, path, vertex, lights)
-    }
-
-    #[inline(always)]
-    fn on_miss<L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        lights: &L,
-    ) -> Option<Color<D::F>> {
-        self.tracer.on_miss(d, path, lights)
-    }
-
-    #[inline(always)]
-    fn goes_on(&self, d: D, path: &Path<D>) -> D::M {
-        self.tracer.goes_on(d, path)
     }
 
     #[inline(always)]
@@ -121,15 +83,5 @@ impl<D: Domain, T: Tracer<D>, S: Sampler<D>> Tracer<D> for Dispersing<T, S> {
             bounce.path.state = bounce.path.state.spectral(d);
         }
         Some(bounce)
-    }
-
-    #[inline(always)]
-    fn layers(&self) -> Layers {
-        self.tracer.layers()
-    }
-
-    #[inline(always)]
-    fn cost_map(&self) -> Option<CostMap> {
-        self.tracer.cost_map()
     }
 }

@@ -10,10 +10,12 @@
 mod absorbing;
 mod ambient_occlusion;
 mod any;
+mod camera_pairs;
 mod cost_map;
 mod debug;
 mod dispersing;
 mod features;
+mod forward;
 mod layered;
 mod mis;
 mod path;

@@ -1,5 +1,6 @@
 //! The path tracer: unidirectional, with next-event estimation, multiple importance sampling and Russian roulette.
 
+use super::camera_pairs;
 use super::{Bounce, Mis, Path, PowerHeuristic, Settings, Shadow, Tracer, Vertex, consistent};
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -10,7 +11,8 @@ use crate::sampler::Sampler;
 use crate::surface::PathRay;
 
 /// Pairs of random numbers that a vertex uses.
-pub(super) const PAIRS: u32 = 4;
+const PAIRS: u32 = 4;
+const _: () = assert!(camera_pairs::COUNT <= PAIRS);
 /// Which pair is for what. Those of vertex 0, the camera, come first.
 const LIGHT: u32 = 0;
 const LIGHT_TEXEL: u32 = 1;

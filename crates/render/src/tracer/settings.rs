@@ -1,14 +1,11 @@
 //! What a render tells its tracer: data, so that no option compiles anything anew.
 
+use super::camera_pairs::{FILM, LENS};
 use super::{MAX_DEPTH, Path, PathState};
 use crate::camera::Camera;
 use crate::domain::Domain;
 use crate::math::Vec3;
 use crate::sampler::{SampleKey, Sampler};
-
-/// Pairs of random numbers that make a camera ray. A tracer may use pair 1 for itself, and those from 4 on.
-const FILM: u32 = 0;
-const LENS: u32 = 2;
 
 /// Options of a tracer, as a device gets them.
 #[derive(Clone, Copy, Debug, PartialEq)]

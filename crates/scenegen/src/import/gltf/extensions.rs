@@ -132,7 +132,7 @@ pub(super) fn warn_about_material(
             Support::WithoutEffect | Support::ReportedWhereUsed | Support::Unknown => true,
         };
         if !is_effective {
-            let reason = format!("{extension} is there, and its factor is 0");
+            let reason = without_effect(extension);
             warnings.dismiss(None, place, reason);
             continue;
         }
@@ -161,6 +161,11 @@ pub(super) fn warn_about_others(
             _ => warnings.push(place, format!("{extension} is not supported and ignored")),
         }
     }
+}
+
+/// Why an extension changes nothing whose factor is 0.
+pub(super) fn without_effect(extension: &str) -> String {
+    format!("{extension} is there, and its factor is 0")
 }
 
 fn is_not_zero(value: &Value) -> bool {

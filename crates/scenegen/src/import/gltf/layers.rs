@@ -3,6 +3,7 @@
 use serde_json::{Map, Value};
 
 use super::extension_members::ExtensionMembers;
+use super::extensions;
 use super::members::Members;
 use crate::desc::MetallicRoughness;
 use crate::effect::Effect;
@@ -98,7 +99,7 @@ pub(super) fn read(
 /// Notes the extensions whose factor is 0.
 fn dismiss_without_effect(
     surface: &MetallicRoughness,
-    extensions: &Map<String, Value>,
+    given: &Map<String, Value>,
     members: &mut Members<'_, '_>,
 ) {
     let switches = [
@@ -134,8 +135,8 @@ fn dismiss_without_effect(
         ),
     ];
     for (extension, effect, factor) in switches {
-        if factor == 0.0 && extensions.contains_key(extension) {
-            let reason = format!("{extension} is there, and its factor is 0");
+        if factor == 0.0 && given.contains_key(extension) {
+            let reason = extensions::without_effect(extension);
             members
                 .warnings
                 .dismiss(Some(effect), &*members.place, reason);

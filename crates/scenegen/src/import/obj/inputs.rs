@@ -169,19 +169,3 @@ impl Inputs<'_, '_> {
         })
     }
 }
-
-/// A number without a texture.
-pub(super) fn constant(factor: f32) -> ScalarInput {
-    ScalarInput {
-        factor,
-        texture: None,
-    }
-}
-
-/// A grey without a texture.
-pub(super) fn uniform(factor: f32) -> ColorInput {
-    ColorInput {
-        factor: [factor; 3],
-        texture: None,
-    }
-}

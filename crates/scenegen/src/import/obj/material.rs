@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::illumination::Illumination;
-use super::inputs::{BlackBesideMap, Inputs, constant, uniform};
+use super::inputs::{BlackBesideMap, Inputs};
 use super::statements::Statements;
 use super::textures::Textures;
 use super::transparency::{self, Transparency};
@@ -48,7 +48,7 @@ pub(super) fn read(statements: Statements<'_>, textures: &mut Textures<'_>) -> M
             let factor = opacity;
             (surface, ScalarInput { factor, texture })
         }
-        Transparency::Glass { tint } => (glass(inputs, tint), constant(1.0)),
+        Transparency::Glass { tint } => (glass(inputs, tint), ScalarInput::constant(1.0)),
     };
     let emission = inputs.color("ke", "map_ke", 0.0, BlackBesideMap::Nothing);
     let normal_map = inputs.normal_map();
@@ -87,7 +87,7 @@ fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> Su
     let specular = match illumination {
         Illumination::Diffuse => {
             inputs.statements.dismiss(&["ks", "map_ks", "ns", "map_ns"]);
-            uniform(0.0)
+            ColorInput::constant([0.0; 3])
         }
         _ => inputs.color("ks", "map_ks", 0.0, BlackBesideMap::Black),
     };

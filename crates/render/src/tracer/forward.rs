@@ -1,0 +1,92 @@
+//! Tracers around others: what they leave to the tracer within.
+
+/// Methods of [`Tracer`](super::Tracer) that call those of the field `tracer`.
+macro_rules! forward {
+    ($($method:ident),* $(,)?) => {
+        $($crate::tracer::forward::forward!(@ $method);)*
+    };
+    (@ on_emit) => {
+        #[inline(always)]
+        fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
+            self.tracer.on_emit(d, camera, pixel, sample)
+        }
+    };
+    (@ wavelength) => {
+        #[inline(always)]
+        fn wavelength(&self, d: D, path: &Path<D>) -> Option<D::F> {
+            self.tracer.wavelength(d, path)
+        }
+    };
+    (@ arrive) => {
+        #[inline(always)]
+        fn arrive(&self, d: D, path: &Path<D>, surface: &Surface<D>) -> Path<D> {
+            self.tracer.arrive(d, path, surface)
+        }
+    };
+    (@ on_hit) => {
+        #[inline(always)]
+        fn on_hit<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
+            &self,
+            d: D,
+            path: &Path<D>,
+            vertex: &Vertex<'_, D, B>,
+            lights: &L,
+        ) -> Option<Color<D::F>> {
+            self.tracer.on_hit(d, path, vertex, lights)
+        }
+    };
+    (@ on_miss) => {
+        #[inline(always)]
+        fn on_miss<L: LightKinds<D> + ?Sized>(
+            &self,
+            d: D,
+            path: &Path<D>,
+            lights: &L,
+        ) -> Option<Color<D::F>> {
+            self.tracer.on_miss(d, path, lights)
+        }
+    };
+    (@ goes_on) => {
+        #[inline(always)]
+        fn goes_on(&self, d: D, path: &Path<D>) -> D::M {
+            self.tracer.goes_on(d, path)
+        }
+    };
+    (@ on_shadow) => {
+        #[inline(always)]
+        fn on_shadow<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
+            &self,
+            d: D,
+            path: &Path<D>,
+            vertex: &Vertex<'_, D, B>,
+            lights: &L,
+        ) -> Option<Shadow<D>> {
+            self.tracer.on_shadow(d, path, vertex, lights)
+        }
+    };
+    (@ on_bounce) => {
+        #[inline(always)]
+        fn on_bounce<B: Bsdf<D>>(
+            &self,
+            d: D,
+            path: &Path<D>,
+            vertex: &Vertex<'_, D, B>,
+        ) -> Option<Bounce<D>> {
+            self.tracer.on_bounce(d, path, vertex)
+        }
+    };
+    (@ cost_map) => {
+        #[inline(always)]
+        fn cost_map(&self) -> Option<CostMap> {
+            self.tracer.cost_map()
+        }
+    };
+    (@ layers) => {
+        #[inline(always)]
+        fn layers(&self) -> Layers {
+            self.tracer.layers()
+        }
+    };
+}
+
+pub(super) use forward;
