@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x1deb541ba3880adf;
+    pub const STRUCTURE: u64 = 0xdc231337d3643f21;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);

@@ -27,7 +27,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x0755f04798cb97c2;
+    pub const STRUCTURE: u64 = 0x80e1fea353b5f5f4;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);

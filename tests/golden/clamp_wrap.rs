@@ -27,7 +27,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xbfcf4c2539a85661;
+    pub const STRUCTURE: u64 = 0xb37ee7dc06f30ccf;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);

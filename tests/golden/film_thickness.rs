@@ -27,7 +27,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x6ff6785ac14f97e2;
+    pub const STRUCTURE: u64 = 0x64ec1072773c8e54;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);

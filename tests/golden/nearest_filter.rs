@@ -27,7 +27,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x2e80d1c2d2a92ca7;
+    pub const STRUCTURE: u64 = 0x6ddca91fa5694129;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);

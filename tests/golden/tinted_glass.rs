@@ -6,7 +6,7 @@ use render::layer::Layers;
 use render::light::Point;
 use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
-use render::tracer::{Absorbing, PathTracer, PowerHeuristic, Settings};
+use render::tracer::{Absorption, Beside, InMedia, PathTracer, PowerHeuristic, Settings};
 use residual_device_cpu::generated::render;
 
 /// The scene's structure. What is not in it is not in the renderer.
@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x0ce10e81550fd3c4;
+    pub const STRUCTURE: u64 = 0x44955e4dae6e023c;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -34,7 +34,7 @@ impl Scene<'_> {
 
 impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
-    type Tracer = Absorbing<PathTracer<D, Sobol, PowerHeuristic>>;
+    type Tracer = InMedia<PathTracer<D, Sobol, PowerHeuristic>, Beside, Absorption>;
     type Lights = (Point, ());
 
     #[inline(always)]
@@ -43,12 +43,14 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     }
     #[inline(always)]
     fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
-        Absorbing {
+        InMedia {
             tracer: PathTracer {
                 sampler: Sobol,
                 settings,
                 mis: PowerHeuristic,
             },
+            nesting: Beside,
+            matter: Absorption,
         }
     }
     // Point: 1

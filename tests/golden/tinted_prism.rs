@@ -6,7 +6,9 @@ use render::layer::Layers;
 use render::light::Point;
 use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
-use render::tracer::{Absorbing, Dispersing, PathTracer, PowerHeuristic, Settings};
+use render::tracer::{
+    Absorption, Beside, Dispersing, InMedia, PathTracer, PowerHeuristic, Settings,
+};
 use residual_device_cpu::generated::render;
 
 /// The scene's structure. What is not in it is not in the renderer.
@@ -26,7 +28,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xd776585b7f96dd65;
+    pub const STRUCTURE: u64 = 0x3183ecb9662dc79d;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -34,7 +36,8 @@ impl Scene<'_> {
 
 impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
-    type Tracer = Dispersing<Absorbing<PathTracer<D, Sobol, PowerHeuristic>>, Sobol>;
+    type Tracer =
+        Dispersing<InMedia<PathTracer<D, Sobol, PowerHeuristic>, Beside, Absorption>, Sobol>;
     type Lights = (Point, ());
 
     #[inline(always)]
@@ -44,12 +47,14 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     #[inline(always)]
     fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
         Dispersing {
-            tracer: Absorbing {
+            tracer: InMedia {
                 tracer: PathTracer {
                     sampler: Sobol,
                     settings,
                     mis: PowerHeuristic,
                 },
+                nesting: Beside,
+                matter: Absorption,
             },
             sampler: Sobol,
         }

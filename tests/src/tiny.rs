@@ -6,8 +6,8 @@ use glam::{Vec2, Vec3, Vec4};
 use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{
     AlphaMode, Attenuation, ColorInput, EnvironmentDesc, Filter, MaterialDesc, MeshDesc,
-    MetallicRoughness, NormalMap, PhongSurface, Projection, PunctualKind, ScalarInput, SceneDesc,
-    SurfaceDesc, TextureUse, Wrap,
+    MetallicRoughness, NormalMap, PhongSurface, Projection, PunctualKind, ScalarInput, Scattering,
+    SceneDesc, SurfaceDesc, TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::plan::{
@@ -65,6 +65,12 @@ pub const SIZE: [u32; 2] = [21, 15];
 const TINT: Attenuation = Attenuation {
     color: [0.3, 0.7, 0.5],
     distance: 0.4,
+};
+
+/// Of bodies that scatter.
+const SCATTERING: Scattering = Scattering {
+    multiscatter_color: [0.9, 0.8, 0.6],
+    anisotropy: 0.4,
 };
 
 /// A corner of two sheets.
@@ -280,6 +286,38 @@ fn surfaces() -> Vec<Tiny> {
             ),
         ),
         Tiny::new(
+            "milk",
+            &[
+                Effect::Refraction,
+                Effect::ScatteringMedia,
+                Effect::SmoothNormals,
+            ],
+            &[],
+            behind(
+                surface(
+                    "milk",
+                    MetallicRoughness {
+                        attenuation: Some(TINT),
+                        scattering: Some(SCATTERING),
+                        ..glass(true)
+                    },
+                ),
+                ball(),
+            ),
+        ),
+        Tiny::new(
+            "drink",
+            &[
+                Effect::Refraction,
+                Effect::Absorption,
+                Effect::ScatteringMedia,
+                Effect::NestedBodies,
+                Effect::SmoothNormals,
+            ],
+            &[],
+            drink(),
+        ),
+        Tiny::new(
             "prism",
             &[
                 Effect::Refraction,
@@ -487,6 +525,35 @@ fn behind(material: MaterialDesc, meshes: impl IntoIterator<Item = MeshDesc>) ->
     let mut b = Builder::new("");
     b.add(gray(), corner());
     b.add(material, meshes);
+    lamp(&mut b);
+    finish(b)
+}
+
+/// A glass with something milky in it, which overlaps its wall and is behind it there, and a clear ball in that.
+fn drink() -> SceneDesc {
+    let mut b = Builder::new("");
+    b.add(gray(), corner());
+    let glass_of = |priority| MetallicRoughness {
+        priority,
+        ..glass(true)
+    };
+    let milk = MetallicRoughness {
+        attenuation: Some(TINT),
+        scattering: Some(SCATTERING),
+        ior: 1.33,
+        ..glass_of(0)
+    };
+    let syrup = MetallicRoughness {
+        attenuation: Some(TINT),
+        ior: 1.4,
+        ..glass_of(0)
+    };
+    b.add(
+        surface("glass", glass_of(1)),
+        [sphere([0.25, 0.0, 0.2], 0.45)],
+    );
+    b.add(surface("milk", milk), [sphere([-0.2, 0.0, 0.2], 0.5)]);
+    b.add(surface("syrup", syrup), [sphere([-0.3, 0.05, 0.3], 0.25)]);
     lamp(&mut b);
     finish(b)
 }

@@ -24,6 +24,13 @@ const FACETS: &[Effect] = &[
     Effect::MetallicReflection,
 ];
 
+/// Effects of what paths meet between surfaces.
+const MEDIA: &[Effect] = &[
+    Effect::Absorption,
+    Effect::ScatteringMedia,
+    Effect::NestedBodies,
+];
+
 /// What emitted texts contain, and the effects that alone call for it.
 const WORDS: &[(&str, &[Effect])] = &[
     ("TEXTURE_", &[Effect::Textures]),
@@ -58,7 +65,10 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("Sheen {", &[Effect::Sheen]),
     ("RoughDielectric {", &[Effect::RoughTransmission]),
     ("DiffuseTransmission {", &[Effect::DiffuseTransmission]),
-    ("Absorbing", &[Effect::Absorption]),
+    ("InMedia", MEDIA),
+    ("AbsorptionAndScattering {", &[Effect::ScatteringMedia]),
+    ("Nested", &[Effect::NestedBodies]),
+    ("SolidAmongSolids", &[Effect::NestedBodies]),
     ("Dispersing", &[Effect::Dispersion]),
     ("Dispersive {", &[Effect::Dispersion]),
     ("Phong {", &[Effect::PhongReflection]),
@@ -116,7 +126,12 @@ const SOURCES: &[(&str, &[Effect])] = &[
             Effect::ThinTransmission,
         ],
     ),
-    ("render/src/tracer/absorbing.rs", &[Effect::Absorption]),
+    ("render/src/tracer/in_media.rs", MEDIA),
+    ("render/src/tracer/medium.rs", MEDIA),
+    (
+        "render/src/bsdf/henyey_greenstein.rs",
+        &[Effect::ScatteringMedia],
+    ),
     ("render/src/tracer/dispersing.rs", &[Effect::Dispersion]),
     ("render/src/light/area.rs", &[Effect::EmittingSurfaces]),
     (
@@ -163,11 +178,15 @@ const COMMON: &[&str] = &[
     // What tracers around others leave to them.
     "render/src/tracer/forward.rs",
     "render/src/tracer/mod.rs",
+    // Kinds of media: what they hold is in `medium.rs` and `henyey_greenstein.rs`.
+    "render/src/tracer/matter.rs",
     "render/src/tracer/mis.rs",
+    "render/src/tracer/nesting.rs",
     "render/src/tracer/path.rs",
     "render/src/tracer/path_state.rs",
     "render/src/tracer/settings.rs",
     "render/src/tracer/step.rs",
+    "render/src/tracer/vertex_pairs.rs",
     "render/src/triangle.rs",
 ];
 
@@ -242,7 +261,7 @@ fn renderers_contain_what_scenes_call_for() {
         ("environment", &["light::environment"]),
         ("mixed_metal", &["bsdf::glossy", "bsdf::coated"]),
         ("solid_glass", &["bsdf::dielectric"]),
-        ("tinted_glass", &["tracer::absorbing"]),
+        ("tinted_glass", &["tracer::in_media"]),
     ] {
         let tiny = tiny::all().into_iter().find(|tiny| tiny.name == name);
         let library = check_instructions(&tiny.unwrap().plan(), name);
@@ -269,7 +288,7 @@ const NOT_IN_CORNELL: &[&str] = &[
     "bsdf::mirror",
     "bsdf::combine",
     "decode_normal",
-    "tracer::absorbing",
+    "tracer::in_media",
     "tracer::dispersing",
     "bvh::instances",
 ];

@@ -46,6 +46,7 @@ goldens! {
     diffuse_and_mirror
     diffuse_and_phong
     directional_light
+    drink
     emission
     environment
     film_thickness
@@ -58,6 +59,7 @@ goldens! {
     masked_emission
     matte
     metal
+    milk
     mirror
     mirror_wrap
     mixed_metal

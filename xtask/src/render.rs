@@ -26,7 +26,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let device = CpuDevice::new(args.render.threads).context("starting threads")?;
     let options = args
         .render
-        .render_options(args.scene.size.0, plan.default_reach());
+        .render_options(args.scene.size.0, scene::defaults(&plan));
     let tier = match args.scene.specialize {
         SpecializeArg::None => TierArg::Interpreted,
         SpecializeArg::Structure | SpecializeArg::Constants => args.tier,

@@ -50,7 +50,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let cpu = CpuDevice::new(args.render.threads).context("starting threads")?;
     let options = args
         .render
-        .render_options(args.scene.size.0, plan.default_reach());
+        .render_options(args.scene.size.0, scene::defaults(&plan));
     let bvh_start = Instant::now();
     let quality = hierarchy_quality(plan.data.triangle_count());
     let bvh = AnyBvh::build(&plan.data, LaneCount::Four, quality);

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use residual_frontend::cryptomatte::Manifest;
 use residual_frontend::note;
+use residual_frontend::options::SceneDefaults;
 use residual_frontend::session::Subject;
 use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
@@ -12,7 +13,7 @@ use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{
-    Binding, CameraChoice, CullingRule, LightPicks, Plan, PlanOptions, View, plan,
+    Binding, BodyRule, CameraChoice, CullingRule, LightPicks, Plan, PlanOptions, View, plan,
 };
 
 use crate::args::SceneArgs;
@@ -119,6 +120,7 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
         },
         tracer: args.tracer.node(args.view, args.mis),
         layers: args.layers(),
+        bodies: BodyRule::default(),
         flat_normals: false,
     };
     Ok((scene, options))
@@ -155,4 +157,12 @@ pub(crate) fn load_with_description(args: &SceneArgs) -> Result<(Plan, SceneDesc
         );
     }
     Ok((plan, scene, options))
+}
+
+/// What a scene suggests where the user asks for nothing.
+pub(crate) fn defaults(plan: &Plan) -> SceneDefaults {
+    SceneDefaults {
+        max_depth: plan.default_max_depth(),
+        reach: plan.default_reach(),
+    }
 }

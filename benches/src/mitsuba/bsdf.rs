@@ -125,6 +125,14 @@ impl Inputs<'_> {
                 interface: AnyInterface::Thin,
                 ..
             } => Err("a thin dielectric".to_owned()),
+            BsdfNode::Dielectric {
+                interface: AnyInterface::SolidAmongSolids,
+                ..
+            }
+            | BsdfNode::RoughDielectric {
+                interface: AnyInterface::SolidAmongSolids,
+                ..
+            } => Err("a body within another".to_owned()),
             BsdfNode::RoughDielectric {
                 transmittance,
                 ior,

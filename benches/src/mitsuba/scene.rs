@@ -8,6 +8,7 @@ use glam::Vec3;
 use residual_render::camera::CameraRecord;
 use residual_render::passes::RenderOptions;
 use residual_render::program::{CameraNode, LightNode};
+use residual_render::tracer::Between;
 use residual_scenegen::desc::{LightDesc, PunctualKind, SceneDesc};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 
@@ -44,6 +45,10 @@ pub fn export(
         ..options.clone()
     };
     let plan = plan(scene, &options)?;
+    anyhow::ensure!(
+        plan.structure.between == Between::default(),
+        "the scene has bodies that absorb, scatter, disperse or lie within each other, which are not exported to Mitsuba"
+    );
     let shapes = shapes(&plan);
     let mut elements = Vec::new();
     for (index, shape) in shapes.iter().enumerate() {

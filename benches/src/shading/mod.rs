@@ -51,6 +51,8 @@ pub fn plan() -> Plan {
             images: BTreeMap::new(),
             culled: false,
             absorbs: false,
+            scatters: false,
+            body: false,
         }]
     };
     Plan {

@@ -101,10 +101,11 @@ fn source(plan: &Plan, size: &[u32; 2], lanes: &str, data: &Path) -> String {
         .collect();
     format!(
         "{}\npub(crate) const SCENE: Option<crate::StandaloneScene> = Some(crate::StandaloneScene {{\n    \
-         name: {:?},\n    size: {size:?},\n    reach: {:?},\n    programs: {},\n    is_bounded: {},\n    effects: &{effects:?},\n    manifests: &[{manifests}],\n    \
+         name: {:?},\n    size: {size:?},\n    defaults: residual_frontend::options::SceneDefaults {{ max_depth: {}, reach: {:?} }},\n    programs: {},\n    is_bounded: {},\n    effects: &{effects:?},\n    manifests: &[{manifests}],\n    \
          data: include_bytes!({data:?}),\n    renderer: &Compiled,\n    lanes: Compiled::LANES,\n}});\n",
         rust::module(plan, lanes),
         plan.name,
+        plan.default_max_depth(),
         plan.default_reach(),
         plan.structure.programs.len(),
         plan.structure.tracer.is_bounded(),

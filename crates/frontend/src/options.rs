@@ -38,9 +38,9 @@ pub struct RenderArgs {
     /// Spend more samples where the image is noisy and fewer where it is not; the average is --spp
     #[arg(long)]
     pub adaptive: bool,
-    /// Most vertices of a path: 1 is emission seen directly, 2 adds direct light
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub max_depth: u32,
+    /// Most vertices of a path: 1 is emission seen directly, 2 adds direct light [default: 8, or 256 where bodies scatter]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub max_depth: Option<u32>,
     /// First vertex at which Russian roulette may end a path
     #[arg(long, value_name = "N", default_value_t = RenderOptions::default().roulette_from, value_parser = clap::value_parser!(u32).range(1..))]
     pub roulette: u32,
@@ -71,8 +71,8 @@ impl RenderArgs {
         }
     }
 
-    /// What the device is told; `reach` is used where none is asked for.
-    pub fn render_options(&self, size: [u32; 2], reach: f32) -> RenderOptions {
+    /// What the device is told.
+    pub fn render_options(&self, size: [u32; 2], scene: SceneDefaults) -> RenderOptions {
         let is_endless = self.time.is_none() && self.error.is_none();
         RenderOptions {
             size,
@@ -83,12 +83,21 @@ impl RenderArgs {
                 true => Sampling::Adaptive,
                 false => Sampling::Uniform,
             },
-            max_depth: self.max_depth,
+            max_depth: self.max_depth.unwrap_or(scene.max_depth),
             roulette_from: self.roulette,
             seed: self.seed,
-            reach: self.reach.unwrap_or(reach),
+            reach: self.reach.unwrap_or(scene.reach),
         }
     }
+}
+
+/// What a scene suggests where the user asks for nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneDefaults {
+    /// Most vertices of a path.
+    pub max_depth: u32,
+    /// How far a tracer reaches.
+    pub reach: f32,
 }
 
 /// How statistics are printed.

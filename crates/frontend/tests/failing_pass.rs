@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 
 use anyhow::bail;
 use residual_frontend::display::ToneMap;
-use residual_frontend::options::RenderArgs;
+use residual_frontend::options::{RenderArgs, SceneDefaults};
 use residual_frontend::session::{Session, Subject};
 use residual_render::film::Film;
 use residual_render::layer::Layers;
@@ -24,7 +24,7 @@ fn what_there_was_before_is_written_and_the_failure_told() {
         time: None,
         error: None,
         adaptive: false,
-        max_depth: 8,
+        max_depth: Some(8),
         roulette: 5,
         seed: 0,
         reach: None,
@@ -33,7 +33,13 @@ fn what_there_was_before_is_written_and_the_failure_told() {
         quiet: true,
     };
     let session = Session::new(&args, OsStr::new("scene"), Layers::NONE).unwrap();
-    let options = args.render_options(SIZE, 1.0);
+    let options = args.render_options(
+        SIZE,
+        SceneDefaults {
+            max_depth: 8,
+            reach: 1.0,
+        },
+    );
     let pass = |film: &mut Film, pass: Pass| {
         if pass.first > 0 {
             bail!("the device was lost");

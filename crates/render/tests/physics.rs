@@ -13,6 +13,7 @@ mod domain_formulas;
 mod elementary;
 mod environment_light;
 mod lights;
+mod media;
 mod microfacet;
 mod sampler;
 mod spawn;

@@ -8,7 +8,7 @@ use crate::desc::{
 };
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
-use crate::plan::{CullingRule, LightPicks, Optics, PlanOptions};
+use crate::plan::{BodyRule, CullingRule, LightPicks, Optics, PlanOptions};
 use crate::sixteen_bits;
 
 /// How an effect is taken out of a scene, in words; `None` for those without which there is no picture, or which
@@ -22,6 +22,8 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::Iridescence => "without a film",
         Effect::RoughTransmission => "smooth",
         Effect::Absorption => "clear",
+        Effect::ScatteringMedia => "what is scattered is absorbed",
+        Effect::NestedBodies => "beside each other",
         Effect::Dispersion => "all wavelengths bent alike",
         Effect::PhongReflection | Effect::MirrorReflection => "matte",
         Effect::ThinTransmission | Effect::Refraction | Effect::DiffuseTransmission => "opaque",
@@ -73,6 +75,7 @@ pub fn without(
         Effect::VertexColors => scene.meshes.iter_mut().for_each(|mesh| mesh.colors = None),
         Effect::SmoothNormals => options.flat_normals = true,
         Effect::BackFaceCulling => options.culling = CullingRule::None,
+        Effect::NestedBodies => options.bodies = BodyRule::Beside,
         Effect::LightTree => options.light_picks = LightPicks::Mixed,
         Effect::PointLights => scene
             .lights
@@ -145,6 +148,9 @@ fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
         }
         (Effect::Absorption, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.attenuation = None;
+        }
+        (Effect::ScatteringMedia, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.scattering = None;
         }
         (Effect::Dispersion, SurfaceDesc::MetallicRoughness(surface)) => surface.dispersion = 0.0,
         (Effect::DiffuseTransmission, SurfaceDesc::MetallicRoughness(surface)) => {

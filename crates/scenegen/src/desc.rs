@@ -11,7 +11,7 @@ mod inputs;
 mod metallic_roughness;
 
 pub use inputs::{ColorInput, NormalMap, ScalarInput, TextureUse, UvTransform};
-pub use metallic_roughness::{Attenuation, MetallicRoughness};
+pub use metallic_roughness::{Attenuation, MetallicRoughness, Scattering};
 
 use glam::{Affine3A, DVec3, Quat, Vec2, Vec3, Vec4};
 

@@ -36,6 +36,8 @@ macro_rules! surface_inputs {
                 transmission,
                 solid: _,
                 attenuation: _,
+                scattering: _,
+                priority: _,
                 dispersion: _,
                 diffuse_transmission,
                 diffuse_transmission_color,

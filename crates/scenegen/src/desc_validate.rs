@@ -128,6 +128,15 @@ impl SceneDesc {
                     || place("attenuation"),
                     "has no colour in (0, 1] or no positive distance",
                 )?;
+                let is_valid = surface.scattering.is_none_or(|scattering| {
+                    let mut colors = scattering.multiscatter_color.iter();
+                    colors.all(|c| (0.0..=1.0).contains(c)) && scattering.anisotropy.abs() < 1.0
+                });
+                require(
+                    is_valid,
+                    || place("scattering"),
+                    "has no colour in [0, 1] or no anisotropy in (-1, 1)",
+                )?;
                 require(
                     surface.dispersion.is_finite() && surface.dispersion >= 0.0,
                     || place("dispersion"),

@@ -38,6 +38,8 @@ effects! {
     RoughTransmission = "rough transmission",
     DiffuseTransmission = "diffuse transmission",
     Absorption = "absorption",
+    ScatteringMedia = "scattering media",
+    NestedBodies = "bodies within bodies",
     Dispersion = "dispersion",
     MixedLobes = "mixed lobes",
     Textures = "textures",

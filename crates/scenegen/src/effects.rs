@@ -32,6 +32,16 @@ impl Effects {
                 effects.add_program(program, &Caller::new(material));
             }
         }
+        if structure.between.nests() {
+            for body in plan
+                .materials
+                .iter()
+                .flatten()
+                .filter(|material| material.body)
+            {
+                effects.add(Effect::NestedBodies, &Caller::new(body).place);
+            }
+        }
         for (light, of_kind) in structure.lights.iter().zip(&plan.lights) {
             for source in &of_kind.sources {
                 effects.add(light_effect(light), source);
@@ -92,6 +102,9 @@ impl Effects {
         }
         if who.material.absorbs {
             self.add(Effect::Absorption, place);
+        }
+        if who.material.scatters {
+            self.add(Effect::ScatteringMedia, place);
         }
         if program.disperses() {
             self.add(Effect::Dispersion, place);
@@ -236,11 +249,13 @@ fn bsdf_effects(bsdf: &BsdfNode) -> &'static [Effect] {
         BsdfNode::Sheen { .. } => &[Effect::Sheen],
         BsdfNode::Coated { .. } | BsdfNode::OwnNormal { .. } => &[],
         BsdfNode::Dielectric { interface, .. } => match interface {
-            AnyInterface::Solid => &[Effect::Refraction],
+            AnyInterface::Solid | AnyInterface::SolidAmongSolids => &[Effect::Refraction],
             AnyInterface::Thin => &[Effect::ThinTransmission],
         },
         BsdfNode::RoughDielectric { interface, .. } => match interface {
-            AnyInterface::Solid => &[Effect::Refraction, Effect::RoughTransmission],
+            AnyInterface::Solid | AnyInterface::SolidAmongSolids => {
+                &[Effect::Refraction, Effect::RoughTransmission]
+            }
             AnyInterface::Thin => &[Effect::ThinTransmission, Effect::RoughTransmission],
         },
         BsdfNode::Phong { .. } => &[Effect::PhongReflection],

@@ -10,7 +10,7 @@ use clap::Parser;
 use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, TileRenderer};
 use residual_frontend::cryptomatte::Manifest;
 use residual_frontend::hierarchy_quality;
-use residual_frontend::options::{RenderArgs, Size};
+use residual_frontend::options::{RenderArgs, SceneDefaults, Size};
 use residual_frontend::session::{Session, Subject};
 use residual_frontend::stats::{DeviceReport, Preparation, SceneSummary, Statistics, TierReport};
 use residual_render::camera::set_aspect;
@@ -43,8 +43,8 @@ struct StandaloneScene {
     data: &'static [u8],
     /// The renderer.
     renderer: &'static (dyn TileRenderer + Sync),
-    /// How far its tracer reaches unless told otherwise.
-    reach: f32,
+    /// What its tracer does unless told otherwise.
+    defaults: SceneDefaults,
     /// Paths that it shades at once.
     lanes: LaneCount,
 }
@@ -99,7 +99,7 @@ fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
         buffers: data.buffers(),
         traversal: &bvh,
     };
-    let options = args.render.render_options(size, scene.reach);
+    let options = args.render.render_options(size, scene.defaults);
     let manifests = scene.manifests.iter();
     let manifests = manifests.map(|&(layer, names)| Manifest {
         layer: layer.parse().expect("a layer"),

@@ -6,8 +6,9 @@ use residual_device_cpu::{Interpreter, LaneCount};
 use residual_render::domain::Buffer;
 use residual_render::light::EnvironmentHeader;
 use residual_render::program::{LightNode, Structure};
+use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
-use residual_render::tracer::Between;
+use residual_render::tracer::{AnyNesting, Between, MatterNode, MediaNode, MediumRecord};
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{LightKindUse, MaterialUse, Plan};
 use residual_tests::pictures::first_difference;
@@ -115,16 +116,30 @@ fn a_renderer_for_everything_gives_the_same_bits() {
     add_black_environment(&mut everything.data);
     everything.structure = with_everything(&plain.structure);
     everything.structure.between = Between {
-        absorption: true,
+        media: Some(MediaNode {
+            nesting: AnyNesting::Nested,
+            matter: MatterNode::AbsorptionAndScattering,
+        }),
         dispersion: true,
     };
-    // The outside, which absorbs nothing.
-    *everything.data.buffer_mut(Buffer::Media) = vec![0; 4];
+    // The outside, which is empty.
+    let mut outside = Vec::new();
+    let record = MediumRecord {
+        halvings: [0.0; 3].into(),
+        ior: 1.0,
+        albedo: [0.0; 3].into(),
+        anisotropy: 0.0,
+        above: 1,
+    };
+    record.append_to(&mut outside);
+    *everything.data.buffer_mut(Buffer::Media) = outside;
     let nobody = MaterialUse {
         name: "nobody".to_owned(),
         images: BTreeMap::new(),
         culled: false,
         absorbs: true,
+        scatters: true,
+        body: true,
     };
     everything.materials = vec![vec![nobody]; everything.structure.programs.len()];
     let none = LightKindUse {

@@ -7,6 +7,12 @@ use crate::surface::Surface;
 pub trait Interface {
     /// Transmitted rays are refracted.
     fn refracts(&self) -> bool;
+
+    /// What is around the body is known at each point ([`Surface::around`]), and may have another index than 1.
+    #[inline(always)]
+    fn may_be_within(&self) -> bool {
+        false
+    }
 }
 
 /// A body: rays refract in and out of it.
@@ -15,6 +21,21 @@ pub struct Solid;
 impl Interface for Solid {
     #[inline(always)]
     fn refracts(&self) -> bool {
+        true
+    }
+}
+
+/// A body that may lie within others: rays refract between it and them.
+#[derive(Clone, Copy, Debug)]
+pub struct SolidAmongSolids;
+impl Interface for SolidAmongSolids {
+    #[inline(always)]
+    fn refracts(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn may_be_within(&self) -> bool {
         true
     }
 }
@@ -34,6 +55,8 @@ impl Interface for Thin {
 pub enum AnyInterface {
     /// [`Solid`].
     Solid,
+    /// [`SolidAmongSolids`].
+    SolidAmongSolids,
     /// [`Thin`].
     Thin,
 }
@@ -42,10 +65,20 @@ impl Interface for AnyInterface {
     fn refracts(&self) -> bool {
         match self {
             Self::Solid => Solid.refracts(),
+            Self::SolidAmongSolids => SolidAmongSolids.refracts(),
             Self::Thin => Thin.refracts(),
         }
     }
+
+    #[inline(always)]
+    fn may_be_within(&self) -> bool {
+        matches!(self, Self::SolidAmongSolids)
+    }
 }
+
+/// Nearer to 1 than by this no ratio of indices gets: facets would bend light so little that their normals could not be told
+/// from directions.
+const LEAST_BEND: f64 = 1e-3;
 
 /// Index of refraction of what lies beyond the surface relative to what lies before it, of a body of this index.
 #[inline(always)]
@@ -55,6 +88,14 @@ pub(super) fn relative_ior<D: Domain>(
     interface: &impl Interface,
     ior: D::F,
 ) -> D::F {
+    let one = d.lit(1.0);
+    if interface.may_be_within() {
+        let ratio = ior / surface.around;
+        let bend = ratio - one;
+        let least = one + d.copysign(d.lit(LEAST_BEND), bend);
+        let ratio = d.select(d.lt(d.abs(bend), d.lit(LEAST_BEND)), least, ratio);
+        return d.select(surface.front, ratio, one / ratio);
+    }
     // A sheet is entered from either side.
     if interface.refracts() {
         d.select(surface.front, ior, d.lit(1.0) / ior)
@@ -76,6 +117,10 @@ pub(super) fn radiance_scale<D: Domain>(
     interface.refracts().then(|| {
         let (here, beyond) = (d.lt(d.lit(0.0), wi_z), d.lt(wi_z, d.lit(0.0)));
         let inside = (surface.front & beyond) | (!surface.front & here);
-        d.select(inside, ior * ior, d.lit(1.0))
+        let around = match interface.may_be_within() {
+            true => surface.around * surface.around,
+            false => d.lit(1.0),
+        };
+        d.select(inside, ior * ior, around)
     })
 }

@@ -55,6 +55,8 @@ pub struct Surface<D: Domain> {
     pub light: D::U,
     /// Index of the object that the triangle belongs to.
     pub object: D::U,
+    /// Index of refraction of what the body lies in whose surface it is; 1 unless bodies lie within each other.
+    pub around: D::F,
     /// The wavelength that the material is evaluated for, in nanometres.
     pub wavelength: D::F,
     /// Inputs of a boxed program, evaluated once per point. Unused, and optimised away, in emitted programs.
@@ -151,6 +153,7 @@ impl<D: Domain> Surface<D> {
             params: place.triangle.params,
             light: place.triangle.light,
             object: place.triangle.object,
+            around: one,
             wavelength: d.lit(D_LINE),
             inputs: [Vec3::splat(zero); MAX_INPUTS],
         }

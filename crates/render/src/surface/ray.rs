@@ -1,6 +1,6 @@
 //! What goes into traversal and what comes out of it.
 
-use crate::domain::Domain;
+use crate::domain::{Bundle, Domain};
 use crate::math::Vec3;
 
 /// A ray with as many lanes as its domain. The interval is [0, tmax] in units of `dir`.
@@ -20,6 +20,17 @@ impl<D: Domain> PathRay<D> {
     pub fn unbounded(d: D, org: Vec3<D::F>, dir: Vec3<D::F>) -> Self {
         let tmax = d.lit(f64::from(f32::MAX));
         Self { org, dir, tmax }
+    }
+}
+
+impl<D: Domain> Bundle<D> for PathRay<D> {
+    #[inline(always)]
+    fn choose(d: D, mask: D::M, a: Self, b: Self) -> Self {
+        Self {
+            org: Vec3::choose(d, mask, a.org, b.org),
+            dir: Vec3::choose(d, mask, a.dir, b.dir),
+            tmax: d.select(mask, a.tmax, b.tmax),
+        }
     }
 }
 

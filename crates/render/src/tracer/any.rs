@@ -1,8 +1,9 @@
 //! A tracer chosen at run time.
 
 use super::{
-    Absorbing, AmbientOcclusion, AnyMis, Bounce, CostMap, Debug, DebugView, Dispersing, Path,
-    PathTracer, Settings, Shadow, Tracer, Vertex,
+    Absorption, AbsorptionAndScattering, AmbientOcclusion, AnyMatter, AnyMis, AnyNesting, Bounce,
+    CostMap, Crossing, Debug, DebugView, Dispersing, InMedia, Passage, Path, PathTracer, Settings,
+    Shadow, Tracer, Vertex,
 };
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -26,10 +27,36 @@ pub enum TracerNode {
 /// What paths of a scene meet beside surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Between {
-    /// Bodies that absorb: [`Absorbing`].
-    pub absorption: bool,
+    /// Bodies that are filled with something, or lie within each other: [`InMedia`].
+    pub media: Option<MediaNode>,
     /// Surfaces that bend wavelengths differently: [`Dispersing`].
     pub dispersion: bool,
+}
+
+impl Between {
+    /// Whether bodies lie within each other.
+    pub fn nests(self) -> bool {
+        self.media
+            .is_some_and(|media| media.nesting == AnyNesting::Nested)
+    }
+}
+
+/// The kinds of media that paths meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MediaNode {
+    /// How bodies lie to each other.
+    pub nesting: AnyNesting,
+    /// What media do to light.
+    pub matter: MatterNode,
+}
+
+/// What media do to light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MatterNode {
+    /// [`Absorption`].
+    Absorption,
+    /// [`AbsorptionAndScattering`].
+    AbsorptionAndScattering,
 }
 
 impl TracerNode {
@@ -61,12 +88,17 @@ impl TracerNode {
                     settings,
                     mis,
                 };
-                match (between.absorption, between.dispersion) {
-                    (false, false) => AnyTracer::Path(tracer),
-                    (true, false) => AnyTracer::Absorbing(Absorbing { tracer }),
-                    (false, true) => AnyTracer::Dispersing(Dispersing { tracer, sampler }),
-                    (true, true) => {
-                        let tracer = Absorbing { tracer };
+                let in_media = |media: MediaNode| InMedia {
+                    tracer,
+                    nesting: media.nesting,
+                    matter: media.matter.matter(sampler),
+                };
+                match (between.media, between.dispersion) {
+                    (None, false) => AnyTracer::Path(tracer),
+                    (Some(media), false) => AnyTracer::InMedia(in_media(media)),
+                    (None, true) => AnyTracer::Dispersing(Dispersing { tracer, sampler }),
+                    (Some(media), true) => {
+                        let tracer = in_media(media);
                         AnyTracer::Both(Dispersing { tracer, sampler })
                     }
                 }
@@ -83,6 +115,21 @@ impl TracerNode {
     }
 }
 
+impl MatterNode {
+    #[inline(always)]
+    fn matter<S>(self, sampler: S) -> AnyMatter<S> {
+        match self {
+            Self::Absorption => AnyMatter::Absorption(Absorption),
+            Self::AbsorptionAndScattering => {
+                AnyMatter::AbsorptionAndScattering(AbsorptionAndScattering { sampler })
+            }
+        }
+    }
+}
+
+/// The path tracer among media.
+type PathsInMedia<D, S> = InMedia<PathTracer<D, S, AnyMis>, AnyNesting, AnyMatter<S>>;
+
 /// Any of the tracers: the interpreted renderer's.
 #[derive(Clone, Copy)]
 #[expect(
@@ -91,9 +138,9 @@ impl TracerNode {
 )]
 pub enum AnyTracer<D: Domain, S> {
     Path(PathTracer<D, S, AnyMis>),
-    Absorbing(Absorbing<PathTracer<D, S, AnyMis>>),
+    InMedia(PathsInMedia<D, S>),
     Dispersing(Dispersing<PathTracer<D, S, AnyMis>, S>),
-    Both(Dispersing<Absorbing<PathTracer<D, S, AnyMis>>, S>),
+    Both(Dispersing<PathsInMedia<D, S>, S>),
     AmbientOcclusion(AmbientOcclusion<D, S>),
     Debug(Debug<D, S>),
 }
@@ -103,7 +150,7 @@ macro_rules! each {
     ($any:expr, $tracer:ident => $call:expr) => {
         match $any {
             AnyTracer::Path($tracer) => $call,
-            AnyTracer::Absorbing($tracer) => $call,
+            AnyTracer::InMedia($tracer) => $call,
             AnyTracer::Dispersing($tracer) => $call,
             AnyTracer::Both($tracer) => $call,
             AnyTracer::AmbientOcclusion($tracer) => $call,
@@ -124,8 +171,19 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for AnyTracer<D, S> {
     }
 
     #[inline(always)]
-    fn arrive(&self, d: D, path: &Path<D>, surface: &Surface<D>) -> Path<D> {
-        each!(self, tracer => tracer.arrive(d, path, surface))
+    fn crossing(
+        &self,
+        d: D,
+        path: &Path<D>,
+        surface: &Surface<D>,
+        interior: D::U,
+    ) -> Option<Crossing<D>> {
+        each!(self, tracer => tracer.crossing(d, path, surface, interior))
+    }
+
+    #[inline(always)]
+    fn passage(&self, d: D, path: &Path<D>, surface: &Surface<D>) -> Option<Passage<D>> {
+        each!(self, tracer => tracer.passage(d, path, surface))
     }
 
     #[inline(always)]

@@ -17,10 +17,27 @@ macro_rules! forward {
             self.tracer.wavelength(d, path)
         }
     };
-    (@ arrive) => {
+    (@ crossing) => {
         #[inline(always)]
-        fn arrive(&self, d: D, path: &Path<D>, surface: &Surface<D>) -> Path<D> {
-            self.tracer.arrive(d, path, surface)
+        fn crossing(
+            &self,
+            d: D,
+            path: &Path<D>,
+            surface: &Surface<D>,
+            interior: D::U,
+        ) -> Option<$crate::tracer::Crossing<D>> {
+            self.tracer.crossing(d, path, surface, interior)
+        }
+    };
+    (@ passage) => {
+        #[inline(always)]
+        fn passage(
+            &self,
+            d: D,
+            path: &Path<D>,
+            surface: &Surface<D>,
+        ) -> Option<$crate::tracer::Passage<D>> {
+            self.tracer.passage(d, path, surface)
         }
     };
     (@ on_hit) => {

@@ -7,7 +7,6 @@
 //! What a scene decides is static: a method that has nothing to give returns `None`, and its code disappears. What a
 //! path decides is a mask, so that lanes stay together.
 
-mod absorbing;
 mod ambient_occlusion;
 mod any;
 mod camera_pairs;
@@ -16,22 +15,30 @@ mod debug;
 mod dispersing;
 mod features;
 mod forward;
+mod in_media;
 mod layered;
+mod matter;
+mod medium;
 mod mis;
+mod nesting;
 mod path;
 mod path_state;
 mod settings;
 mod step;
+mod vertex_pairs;
 
-pub use absorbing::{Absorbing, MediumRecord};
 pub use ambient_occlusion::AmbientOcclusion;
-pub use any::{AnyTracer, Between, TracerNode};
+pub use any::{AnyTracer, Between, MatterNode, MediaNode, TracerNode};
 pub use cost_map::CostMap;
 pub use debug::{Debug, DebugView};
 pub use dispersing::Dispersing;
 pub use features::Features;
+pub use in_media::InMedia;
 pub use layered::{ConstLayers, LayerSet, Layered};
+pub use matter::{Absorption, AbsorptionAndScattering, AnyMatter, Matter, Passage, Scattering};
+pub use medium::MediumRecord;
 pub use mis::{AnyMis, BalanceHeuristic, BsdfOnly, LightsOnly, Mis, PowerHeuristic};
+pub use nesting::{AnyNesting, Beside, Crossing, Nested, Nesting};
 pub use path::PathTracer;
 pub use path_state::{MAX_DEPTH, MAX_MEDIA, PathState};
 pub use settings::{Settings, TracerOptions};
@@ -39,7 +46,7 @@ pub use step::{Step, shade};
 
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
-use crate::domain::Domain;
+use crate::domain::{Bundle, Domain};
 use crate::layer::Layers;
 use crate::light::LightKinds;
 use crate::math::{Color, Vec3};
@@ -82,6 +89,34 @@ pub struct Bounce<D: Domain> {
     pub active: D::M,
 }
 
+impl<D: Domain> Bundle<D> for Shadow<D> {
+    #[inline(always)]
+    fn choose(d: D, mask: D::M, a: Self, b: Self) -> Self {
+        Self {
+            ray: PathRay::choose(d, mask, a.ray, b.ray),
+            contribution: Vec3::choose(d, mask, a.contribution, b.contribution),
+            active: d.select_mask(mask, a.active, b.active),
+        }
+    }
+}
+
+/// Of two ways on from one vertex.
+impl<D: Domain> Bundle<D> for Bounce<D> {
+    #[inline(always)]
+    fn choose(d: D, mask: D::M, a: Self, b: Self) -> Self {
+        Self {
+            path: Path {
+                ray: PathRay::choose(d, mask, a.path.ray, b.path.ray),
+                throughput: Vec3::choose(d, mask, a.path.throughput, b.path.throughput),
+                pdf: d.select(mask, a.path.pdf, b.path.pdf),
+                key: a.path.key,
+                state: PathState(d.select_u(mask, a.path.state.0, b.path.state.0)),
+            },
+            active: d.select_mask(mask, a.active, b.active),
+        }
+    }
+}
+
 /// A vertex of a path: a surface point with what its material says of it.
 #[derive(Clone, Copy)]
 pub struct Vertex<'a, D: Domain, B> {
@@ -93,12 +128,34 @@ pub struct Vertex<'a, D: Domain, B> {
     pub emission: Option<Color<D::F>>,
     /// Its BSDF.
     pub bsdf: &'a B,
-    /// Index of the medium behind the surface, if it is the surface of a body and the scene has media.
-    pub interior: Option<D::U>,
+    /// The surface as that of a body, if it is one and the scene has media.
+    pub crossing: Option<Crossing<D>>,
+    /// The vertex is a place within a medium, which stands for the surface.
+    pub is_in_medium: bool,
+    /// Where the path is scattered before it gets to the surface, if the scene has media that scatter.
+    pub scattering: Option<Scattering<D>>,
     /// The surface bends wavelengths differently.
     pub disperses: bool,
     /// Unit direction back along the path, world space.
     pub wo: Vec3<D::F>,
+}
+
+impl<D: Domain, B> Vertex<'_, D, B> {
+    /// The vertex at a place within a medium that stands instead of the surface.
+    #[inline(always)]
+    fn scattered<'b, P>(&self, place: &'b Surface<D>, phase: &'b P) -> Vertex<'b, D, P> {
+        Vertex {
+            surface: place,
+            triangle: self.triangle,
+            emission: None,
+            bsdf: phase,
+            crossing: None,
+            is_in_medium: true,
+            scattering: None,
+            disperses: false,
+            wo: self.wo,
+        }
+    }
 }
 
 /// What is computed along rays.
@@ -112,10 +169,22 @@ pub trait Tracer<D: Domain> {
         None
     }
 
-    /// The path as it arrives at a surface: with what it has lost on the way.
+    /// What a path meets at the surface of a body that is filled with medium `interior`, if the tracer knows media.
     #[inline(always)]
-    fn arrive(&self, _d: D, path: &Path<D>, _surface: &Surface<D>) -> Path<D> {
-        *path
+    fn crossing(
+        &self,
+        _d: D,
+        _path: &Path<D>,
+        _surface: &Surface<D>,
+        _interior: D::U,
+    ) -> Option<Crossing<D>> {
+        None
+    }
+
+    /// What happens to a path on its way to a surface, if anything may.
+    #[inline(always)]
+    fn passage(&self, _d: D, _path: &Path<D>, _surface: &Surface<D>) -> Option<Passage<D>> {
+        None
     }
 
     /// The contribution of the vertex itself.

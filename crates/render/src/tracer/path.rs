@@ -1,6 +1,6 @@
 //! The path tracer: unidirectional, with next-event estimation, multiple importance sampling and Russian roulette.
 
-use super::camera_pairs;
+use super::vertex_pairs::{BSDF_DIRECTION, LIGHT, LIGHT_TEXEL_AND_MEDIUM, LOBE_AND_ROULETTE, pair};
 use super::{Bounce, Mis, Path, PowerHeuristic, Settings, Shadow, Tracer, Vertex, consistent};
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -9,15 +9,6 @@ use crate::light::{self, LightKinds};
 use crate::math::{Color, Vec3};
 use crate::sampler::Sampler;
 use crate::surface::PathRay;
-
-/// Pairs of random numbers that a vertex uses.
-const PAIRS: u32 = 4;
-const _: () = assert!(camera_pairs::COUNT <= PAIRS);
-/// Which pair is for what. Those of vertex 0, the camera, come first.
-const LIGHT: u32 = 0;
-const LIGHT_TEXEL: u32 = 1;
-const BSDF_DIRECTION: u32 = 2;
-const LOBE_AND_ROULETTE: u32 = 3;
 
 /// The path tracer.
 #[derive(Clone, Copy)]
@@ -31,12 +22,6 @@ pub struct PathTracer<D: Domain, S, M = PowerHeuristic> {
 }
 
 impl<D: Domain, S: Sampler<D>, M: Mis<D>> PathTracer<D, S, M> {
-    #[inline(always)]
-    fn pair(&self, d: D, path: &Path<D>, pair: u32) -> [D::F; 2] {
-        let dimension = path.state.depth(d) * d.uint(PAIRS) + d.uint(pair);
-        self.sampler.pair(d, path.key, dimension)
-    }
-
     /// The weight of light found by a BSDF sample: 1 where light sampling could not have found it.
     #[inline(always)]
     fn bsdf_weight(&self, d: D, bsdf_pdf: D::F, light_pdf: D::F) -> D::F {
@@ -95,9 +80,9 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
         if !bsdf.kind().scatters || lights.is_empty() {
             return None;
         }
-        let [x, y] = self.pair(d, path, LIGHT);
+        let [x, y] = pair(d, &self.sampler, path, LIGHT);
         let third = match lights.takes_three() {
-            true => self.pair(d, path, LIGHT_TEXEL)[0],
+            true => pair(d, &self.sampler, path, LIGHT_TEXEL_AND_MEDIUM)[0],
             false => d.lit(0.0),
         };
         let sample = light::sample(d, lights, surface.point, [x, y, third]);
@@ -145,8 +130,8 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
         if !(kind.scatters || kind.delta) {
             return None;
         }
-        let direction = self.pair(d, path, BSDF_DIRECTION);
-        let [lobe, roulette] = self.pair(d, path, LOBE_AND_ROULETTE);
+        let direction = pair(d, &self.sampler, path, BSDF_DIRECTION);
+        let [lobe, roulette] = pair(d, &self.sampler, path, LOBE_AND_ROULETTE);
         let wo = surface.frame.to_local(d, vertex.wo);
         let sample = bsdf.sample(d, surface, wo, [direction[0], direction[1], lobe]);
         let dir = surface.frame.to_world(sample.wi).normalize(d);
@@ -160,7 +145,10 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
         let largest = outside.max_component(d);
         let early = d.lt_u(path.state.depth(d), self.settings.roulette_from);
         let one = d.lit(1.0);
-        let survival = d.select(early, one, d.min(largest, d.lit(0.95)));
+        // Between surfaces that lose nothing a path may go on for ever. Through a medium it gets out, though after many vertices,
+        // each of which would make it more worth and less likely.
+        let most = if vertex.is_in_medium { 1.0 } else { 0.95 };
+        let survival = d.select(early, one, d.min(largest, d.lit(most)));
         let alive = d.lt(d.lit(0.0), largest) & (early | d.lt(roulette, survival));
         let scale = one / d.select(alive, survival, one);
         Some(Bounce {

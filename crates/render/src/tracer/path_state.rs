@@ -2,7 +2,7 @@
 
 use crate::domain::Domain;
 
-/// Bits of the depth; above them is the medium, and in the last bit whether the path is of one wavelength.
+/// Bits of the depth; above them are the media, and in the last bit whether the path is of one wavelength.
 const DEPTH_BITS: u32 = 10;
 const SPECTRAL_BIT: u32 = 31;
 
@@ -11,7 +11,7 @@ pub const MAX_DEPTH: u32 = (1 << DEPTH_BITS) - 1;
 /// The most media that a scene can have.
 pub const MAX_MEDIA: u32 = (1 << (SPECTRAL_BIT - DEPTH_BITS)) - 1;
 
-/// What a path remembers of its way: how many vertices it has, the medium that it is in, and whether it is of one wavelength.
+/// What a path remembers of its way: how many vertices it has, the media that it is in, and whether it is of one wavelength.
 /// Devices keep the word and do not look into it. The first vertex that a path is looking for has the word 1.
 #[derive(Clone, Copy, Debug)]
 pub struct PathState<U>(pub U);
@@ -43,17 +43,17 @@ impl<U: crate::domain::Unsigned> PathState<U> {
         Self(self.0 + d.uint(1))
     }
 
-    /// Index of the medium that the path's ray passes through; 0 is the outside.
+    /// The media that the path's ray is in, as [`Nesting`](super::Nesting) writes them down; 0 is the outside.
     #[inline(always)]
-    pub fn medium<D: Domain<U = U>>(self, d: D) -> U {
+    pub fn media<D: Domain<U = U>>(self, d: D) -> U {
         (self.0 >> DEPTH_BITS) & d.uint(MAX_MEDIA)
     }
 
-    /// The same path in another medium.
+    /// The same path in other media.
     #[inline(always)]
-    pub fn in_medium<D: Domain<U = U>>(self, d: D, medium: U) -> Self {
+    pub fn in_media<D: Domain<U = U>>(self, d: D, media: U) -> Self {
         let rest = self.0 & d.uint(!(MAX_MEDIA << DEPTH_BITS));
-        Self(rest | (medium << DEPTH_BITS))
+        Self(rest | (media << DEPTH_BITS))
     }
 
     /// Whether the path is of one wavelength.

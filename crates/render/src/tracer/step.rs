@@ -42,14 +42,29 @@ where
     if let Some(wavelength) = tracer.wavelength(d, path) {
         surface.wavelength = wavelength;
     }
-    let path = &tracer.arrive(d, path, &surface);
+    let crossing = material
+        .interior(d, &surface)
+        .and_then(|interior| tracer.crossing(d, path, &surface, interior));
+    if let Some(ior) = crossing.and_then(|crossing| crossing.around) {
+        surface.around = ior;
+    }
+    let passage = tracer.passage(d, path, &surface);
+    let path = &match passage {
+        None => *path,
+        Some(passage) => Path {
+            throughput: path.throughput * passage.weight,
+            ..*path
+        },
+    };
     let shading = material.shade(d, &mut surface, wo);
     let vertex = Vertex {
         surface: &surface,
         triangle: hit.prim,
         emission: shading.emission,
         bsdf: &shading.bsdf,
-        interior: material.interior(d, &surface),
+        crossing,
+        is_in_medium: false,
+        scattering: passage.and_then(|passage| passage.scattering),
         disperses: material.disperses(),
         wo,
     };

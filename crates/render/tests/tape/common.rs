@@ -11,13 +11,18 @@ use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::surface::{TangentRecord, VerticesRecord};
 use residual_render::texture::ImageParam;
+use residual_render::tracer::MediumRecord;
 use residual_render::triangle::TriangleRecord;
 
 /// Words of a triangle's parameters.
 pub(crate) const BLOCK: u32 = 64;
 /// In a block: an image's slot.
 pub(crate) const IMAGE: u32 = 48;
-/// In a block: a texture transform.
+/// In a block: the medium behind a surface.
+pub(crate) const MEDIUM: u32 = 60;
+/// How many media there are.
+pub(crate) const MEDIA: u32 = 32;
+/// In a block: a texture's transform.
 pub(crate) const TRANSFORM: u32 = 52;
 /// How many triangles there are.
 pub(crate) const TRIANGLES: u32 = 4;
@@ -71,6 +76,7 @@ pub(crate) fn scene() -> SceneData {
     fill(Buffer::Colors, 4 * vertices, 0.0, 1.0);
     fill(Buffer::Params, BLOCK * TRIANGLES, 0.05, 1.0);
     fill(Buffer::Texels, 4 * 64, 0.0, 1.0);
+    fill(Buffer::Media, MediumRecord::WORDS * MEDIA, 0.1, 0.9);
     fill(Buffer::Lights, LIGHT_WORDS * 5, -1.0, 1.0);
     let mut vector = || [0; 3].map(|_| random.between(-1.0, 1.0)).into();
     data.push(CameraRecord {
@@ -85,6 +91,12 @@ pub(crate) fn scene() -> SceneData {
     });
     let picks = alias_entries(&mut random, 5, 2);
     set_picks(&mut data, picks.into_iter());
+    for index in 0..MEDIA as usize {
+        data.change(index, |record| MediumRecord {
+            above: 1 + index as u32 / 2 * 2,
+            ..record
+        });
+    }
     let header = EnvironmentHeader {
         width: 4,
         height: 3,
@@ -117,6 +129,7 @@ pub(crate) fn scene() -> SceneData {
             let vertex = (3 * triangle + vertex) as usize;
             data.change(vertex, |record| TangentRecord { sign, ..record });
         }
+        data.buffer_mut(Buffer::Params)[(BLOCK * triangle + MEDIUM) as usize] = 1 + triangle % 3;
         let slot = (BLOCK * triangle + IMAGE) as usize;
         let image = ImageParam {
             first: 4 * triangle,

@@ -10,12 +10,12 @@ use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::surface::{PathRay, SurfaceHit};
 use residual_render::texture::Input;
 use residual_render::tracer::{
-    self, DebugView, Path, PathState, PathTracer, PowerHeuristic, Settings, Tracer, TracerNode,
-    TracerOptions,
+    self, AnyNesting, Between, DebugView, MatterNode, MediaNode, Path, PathState, PathTracer,
+    PowerHeuristic, Settings, Tracer, TracerNode, TracerOptions,
 };
 
 use crate::check::check;
-use crate::common::{Formula, Random, Yield};
+use crate::common::{Formula, MEDIUM, Random, Yield};
 use crate::nodes::{bsdfs, hit_arguments, inputs, light_kinds, program, structure};
 
 /// Paths of the tests are shorter.
@@ -100,16 +100,25 @@ fn cameras_and_samplers() {
 }
 
 /// The step of a tracer at a hit, with all layers.
-struct AnyStep(TracerNode);
+struct AnyStep(TracerNode, Between);
 
 impl Formula for AnyStep {
     fn name(&self) -> String {
-        format!("{:?}", self.0)
+        format!("{:?} {:?}", self.0, self.1)
     }
     fn arguments(&self, random: &mut Random) -> (Vec<f32>, Vec<u32>) {
         let (mut reals, mut words) = hit_arguments(random);
         reals.extend([0; 4].map(|_| random.between(0.1, 1.0)));
-        words.extend([random.word(), random.word(), 1 + random.word() % 9]);
+        // Within two bodies, of which that of the higher index is first.
+        let media = match self.1.media {
+            None => 0,
+            Some(_) => (random.word() % 4) | ((random.word() % 2) << 5),
+        };
+        words.extend([
+            random.word(),
+            random.word(),
+            1 + random.word() % 9 + (media << 10),
+        ]);
         (reals, words)
     }
     fn run<D: Domain>(&self, d: D, r: &[D::F], words: &[D::U]) -> Yield<D> {
@@ -117,6 +126,7 @@ impl Formula for AnyStep {
             unreachable!()
         };
         let mut program = program(bsdfs().pop().unwrap(), inputs(false));
+        program.interior = self.1.media.map(|_| MEDIUM);
         program.emission = Some(EmissionNode {
             radiance: Input(0),
             double_sided: false,
@@ -124,6 +134,7 @@ impl Formula for AnyStep {
         let layers: Layers = Layer::ALL.into_iter().collect();
         let structure = Structure {
             tracer: self.0,
+            between: self.1,
             layers,
             ..structure(light_kinds())
         };
@@ -175,10 +186,20 @@ impl Formula for AnyStep {
 
 #[test]
 fn steps_of_all_tracers() {
-    check(&AnyStep(TracerNode::default()));
-    check(&AnyStep(TracerNode::AmbientOcclusion));
+    let surfaces = Between::default();
+    check(&AnyStep(TracerNode::default(), surfaces));
+    check(&AnyStep(TracerNode::AmbientOcclusion, surfaces));
     for view in DebugView::ALL {
         // A path of this tracer is at its end at once, which the recorder cannot know.
-        check(&AnyStep(TracerNode::Debug(view)));
+        check(&AnyStep(TracerNode::Debug(view), surfaces));
+    }
+    for nesting in [AnyNesting::Beside, AnyNesting::Nested] {
+        for matter in [MatterNode::Absorption, MatterNode::AbsorptionAndScattering] {
+            for dispersion in [false, true] {
+                let media = Some(MediaNode { nesting, matter });
+                let between = Between { media, dispersion };
+                check(&AnyStep(TracerNode::default(), between));
+            }
+        }
     }
 }

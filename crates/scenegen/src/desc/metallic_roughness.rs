@@ -24,6 +24,10 @@ pub struct MetallicRoughness {
     pub solid: bool,
     /// KHR_materials_volume: what a solid absorbs, if anything.
     pub attenuation: Option<Attenuation>,
+    /// KHR_materials_volume_scatter: how a solid scatters, if it does.
+    pub scattering: Option<Scattering>,
+    /// `extras.priority`: where bodies overlap, the one of the highest priority is there.
+    pub priority: i32,
     /// KHR_materials_dispersion: 20 over the Abbe number; 0 bends all wavelengths alike.
     pub dispersion: f32,
     /// KHR_materials_diffuse_transmission: the share of the diffuse light that passes (alpha channel).
@@ -55,13 +59,22 @@ pub struct MetallicRoughness {
     pub clearcoat_normal: Option<NormalMap>,
 }
 
-/// What a body absorbs.
+/// What a body takes of light that goes straight on: all of it is absorbed, but for what is scattered.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attenuation {
     /// What is left of white light after the distance, in (0, 1].
     pub color: [f32; 3],
     /// The distance in metres, positive.
     pub distance: f32,
+}
+
+/// How a body scatters light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scattering {
+    /// The share of light that comes back from a thick layer after many scatterings (multi-scatter albedo), in [0, 1].
+    pub multiscatter_color: [f32; 3],
+    /// Mean cosine between the directions before and after a scattering, in (−1, 1).
+    pub anisotropy: f32,
 }
 
 impl Default for MetallicRoughness {
@@ -77,6 +90,8 @@ impl Default for MetallicRoughness {
             transmission: ScalarInput::constant(0.0),
             solid: false,
             attenuation: None,
+            scattering: None,
+            priority: 0,
             dispersion: 0.0,
             diffuse_transmission: ScalarInput::constant(0.0),
             diffuse_transmission_color: ColorInput::constant([1.0; 3]),

@@ -3,6 +3,8 @@
 use residual_render::bsdf::AnyInterface;
 use residual_render::program::{BsdfNode, ColorNode, ScalarNode};
 
+use residual_render::tracer::AnyNesting;
+
 use super::program::{Builder, is_black};
 use crate::desc::{ColorInput, NormalMap, PhongSurface, SurfaceDesc};
 
@@ -27,7 +29,7 @@ impl Builder<'_> {
             SurfaceDesc::Unlit => BsdfNode::Black,
             SurfaceDesc::Dielectric { ior, transmittance } => {
                 let tint = self.sources.constant_color(*transmittance);
-                self.dielectric(tint, *ior, AnyInterface::Solid)
+                self.dielectric(tint, *ior, self.solid())
             }
         }
     }
@@ -38,6 +40,14 @@ impl Builder<'_> {
         }
         BsdfNode::Diffuse {
             albedo: self.color("albedo", albedo),
+        }
+    }
+
+    /// The interface of a body.
+    pub(super) fn solid(&self) -> AnyInterface {
+        match self.nesting {
+            AnyNesting::Beside => AnyInterface::Solid,
+            AnyNesting::Nested => AnyInterface::SolidAmongSolids,
         }
     }
 

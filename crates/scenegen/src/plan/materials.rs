@@ -5,17 +5,16 @@ use std::collections::BTreeMap;
 use residual_render::surface::Attributes;
 use residual_render::tracer::{DebugView, TracerNode};
 
-use super::closed::is_closed;
 use super::geometry::is_smooth;
 use super::images::Images;
-use super::media::Media;
+use super::media::{Closed, Media};
 use super::opacity::Opacity;
 use super::options::{CullingRule, PlanOptions};
 use super::planned::MaterialUse;
 use super::planned_materials::{Materials, PlannedMaterial};
 use super::program::Builder;
 use super::sources::Sources;
-use crate::desc::{Attenuation, MaterialDesc, SceneDesc, SurfaceDesc};
+use crate::desc::{SceneDesc, SurfaceDesc};
 
 /// Plans the materials of all instanced meshes that are seen.
 pub(super) fn plan_materials(
@@ -29,19 +28,21 @@ pub(super) fn plan_materials(
     };
     let mut indices = BTreeMap::new();
     let available = available_attributes(scene);
-    let mut media = Media::default();
-    let has_media = (0..available.len())
-        .any(|material| available[material].is_some() && absorbs(scene, material));
+    let seen: Vec<_> = available.iter().map(Option::is_some).collect();
+    let closed = Closed::of(scene);
+    let media = Media::of(scene, &seen, &closed, options.bodies);
     for (material, available) in available.into_iter().enumerate() {
         let Some(available) = available else { continue };
         let desc = &scene.materials[material];
         let place = format!("material {:?}", desc.name);
         let sources = Sources::new(scene, options.binding, available, images, place);
-        let encloses = encloses_a_body(scene, material);
         let mut builder = Builder {
             sources,
             inputs: Vec::new(),
-            encloses,
+            // Rays are then refracted even where the file has no KHR_materials_volume: the specification's thin walls are meant
+            // for sheets, and other offline renderers (Cycles, Mitsuba) refract as well.
+            encloses: closed.materials[material] && transmits(&desc.surface),
+            nesting: media.nesting(),
         };
         let opacity = builder.opacity(desc);
         if opacity == Opacity::Transparent {
@@ -58,17 +59,17 @@ pub(super) fn plan_materials(
         if options.tracer == TracerNode::Debug(DebugView::TextureCoordinates) {
             program.attributes.uv0 |= available.uv0;
         }
-        if has_media && program.bsdf.encloses() {
-            let medium = media.index(attenuation(desc));
-            program.interior = Some(builder.sources.index(medium));
-        }
+        let interior = media
+            .interior(material)
+            .filter(|_| program.bsdf.transmits());
+        program.interior = interior.map(|medium| builder.sources.index(medium));
+        let has_interior = interior.is_some();
         let collected = builder.sources.collected();
         let transmits = program.bsdf.transmits();
         let culled = options.culling == CullingRule::Gltf && !desc.double_sided && !transmits;
         let alpha_tested = program.alpha_test.is_some();
         // Programs are the same if they print the same: floats print exactly, so this neither merges nor splits
         // what must not be.
-        let program_absorbs = program.interior.is_some() && attenuation(desc).is_some();
         let key = format!("{program:?}");
         let index = *indices.entry(key).or_insert_with(|| {
             materials.programs.push(program);
@@ -79,7 +80,9 @@ pub(super) fn plan_materials(
             name: desc.name.clone(),
             images: collected.images,
             culled,
-            absorbs: program_absorbs,
+            absorbs: has_interior && media.absorbs(material),
+            scatters: has_interior && media.scatters(material),
+            body: has_interior,
         });
         materials.planned[material] = Some(PlannedMaterial {
             program: index,
@@ -90,29 +93,16 @@ pub(super) fn plan_materials(
         materials.params.extend(collected.params);
         materials.dismissed.extend(collected.dismissed);
     }
-    materials.media = match has_media {
-        true => media.words(),
-        false => Vec::new(),
-    };
-    materials
-}
-
-fn attenuation(material: &MaterialDesc) -> Option<Attenuation> {
-    match &material.surface {
-        SurfaceDesc::MetallicRoughness(surface) => surface.attenuation,
-        _ => None,
+    if materials
+        .programs
+        .iter()
+        .any(|program| program.interior.is_some())
+    {
+        materials.media = media.node;
+        materials.media_words = media.words();
     }
-}
-
-/// Whether a material's surfaces bound bodies that absorb.
-fn absorbs(scene: &SceneDesc, material: usize) -> bool {
-    let desc = &scene.materials[material];
-    let SurfaceDesc::MetallicRoughness(surface) = &desc.surface else {
-        return false;
-    };
-    surface.attenuation.is_some()
-        && surface.transmission.factor > 0.0
-        && (surface.solid || encloses_a_body(scene, material))
+    materials.warnings = media.warnings;
+    materials
 }
 
 /// For each material that some instance uses, the attributes that any of its meshes has.
@@ -137,22 +127,9 @@ fn available_attributes(scene: &SceneDesc) -> Vec<Option<Attributes>> {
     available
 }
 
-/// Whether a transmitting material's surfaces are all closed. Its rays are then refracted even where the file has no
-/// KHR_materials_volume: the specification's thin walls are meant for sheets, and other offline renderers (Cycles,
-/// Mitsuba) refract as well.
-fn encloses_a_body(scene: &SceneDesc, material: usize) -> bool {
-    let transmits = |surface: &SurfaceDesc| match surface {
+fn transmits(surface: &SurfaceDesc) -> bool {
+    match surface {
         SurfaceDesc::MetallicRoughness(surface) => surface.transmission.factor > 0.0,
-        SurfaceDesc::Phong(_)
-        | SurfaceDesc::Mirror { .. }
-        | SurfaceDesc::Checkerboard { .. }
-        | SurfaceDesc::Unlit
-        | SurfaceDesc::Dielectric { .. } => false,
-    };
-    transmits(&scene.materials[material].surface)
-        && scene
-            .meshes
-            .iter()
-            .filter(|mesh| mesh.material == material)
-            .all(is_closed)
+        _ => false,
+    }
 }

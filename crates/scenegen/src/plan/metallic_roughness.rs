@@ -94,7 +94,7 @@ impl Builder<'_> {
     /// `mix(opaque, transmitting, transmission)` under the same coat.
     fn dielectric_part(&mut self, surface: &MetallicRoughness, base: ColorNode) -> BsdfNode {
         let interface = match surface.solid || self.encloses {
-            true => AnyInterface::Solid,
+            true => self.solid(),
             false => AnyInterface::Thin,
         };
         let transmission = self.sources.scalar(&surface.transmission);
@@ -102,7 +102,7 @@ impl Builder<'_> {
             && let Some(reason) = opaque(&transmission, &base)
         {
             let effect = match interface {
-                AnyInterface::Solid => Effect::Refraction,
+                AnyInterface::Solid | AnyInterface::SolidAmongSolids => Effect::Refraction,
                 AnyInterface::Thin => Effect::ThinTransmission,
             };
             self.sources.dismiss(effect, reason);
@@ -150,7 +150,7 @@ impl Builder<'_> {
         interface: AnyInterface,
     ) -> ScalarNode {
         let node = self.sources.number(ior);
-        let is_bent = interface == AnyInterface::Solid && ior > 1.0;
+        let is_bent = interface != AnyInterface::Thin && ior > 1.0;
         if surface.dispersion == 0.0 || !is_bent {
             return node;
         }

@@ -43,7 +43,7 @@ use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
 pub use optics::{Aperture, Focus, Optics};
-pub use options::{Binding, CullingRule, LightPicks, PlanOptions};
+pub use options::{Binding, BodyRule, CullingRule, LightPicks, PlanOptions};
 pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
 
 use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
@@ -106,12 +106,13 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     *data.buffer_mut(Buffer::Params) = materials.params;
     let between = match options.tracer {
         TracerNode::Path(_) => Between {
-            absorption: !materials.media.is_empty(),
+            media: materials.media,
             dispersion: materials.programs.iter().any(Program::disperses),
         },
         TracerNode::AmbientOcclusion | TracerNode::Debug(_) => Between::default(),
     };
-    *data.buffer_mut(Buffer::Media) = materials.media;
+    *data.buffer_mut(Buffer::Media) = materials.media_words;
+    warnings.extend(materials.warnings);
 
     let mut plan = Plan {
         name: scene.name.clone(),

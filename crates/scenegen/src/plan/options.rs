@@ -28,6 +28,16 @@ pub enum CullingRule {
     None,
 }
 
+/// How bodies that transmit lie to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BodyRule {
+    /// Within each other, where their boxes overlap.
+    #[default]
+    Nested,
+    /// Beside each other: whoever leaves one is outside.
+    Beside,
+}
+
 /// How often each light is picked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LightPicks {
@@ -57,6 +67,8 @@ pub struct PlanOptions {
     pub size: [u32; 2],
     /// Culling.
     pub culling: CullingRule,
+    /// How bodies lie to each other.
+    pub bodies: BodyRule,
     /// All triangles are flat, whatever normals they have.
     pub flat_normals: bool,
     /// How often each light is picked.
@@ -77,6 +89,7 @@ impl Default for PlanOptions {
             optics: Optics::default(),
             size: [640, 480],
             culling: CullingRule::default(),
+            bodies: BodyRule::default(),
             flat_normals: false,
             light_picks: LightPicks::default(),
             sampler: AnySampler::Sobol,

@@ -8,7 +8,7 @@ use residual_render::domain::Buffer;
 use residual_render::layer::Layer;
 use residual_render::program::Structure;
 use residual_render::scene_data::SceneData;
-use residual_render::tracer::TracerNode;
+use residual_render::tracer::{MatterNode, TracerNode};
 use residual_render::triangle::ObjectRecord;
 
 use super::options::{Binding, LightPicks};
@@ -68,6 +68,16 @@ impl Plan {
         }
     }
 
+    /// Most vertices of a path unless the user says so: among bodies that scatter, many more than elsewhere, since most of
+    /// theirs are within a body.
+    pub fn default_max_depth(&self) -> u32 {
+        let media = self.structure.between.media;
+        match media.map(|media| media.matter) {
+            Some(MatterNode::AbsorptionAndScattering) => 256,
+            Some(MatterNode::Absorption) | None => 8,
+        }
+    }
+
     /// How far a tracer reaches unless it is told: [`reach`](residual_render::tracer::TracerOptions::reach).
     pub fn default_reach(&self) -> f32 {
         match self.structure.tracer {
@@ -101,6 +111,10 @@ pub struct MaterialUse {
     pub culled: bool,
     /// Its surfaces bound bodies that absorb.
     pub absorbs: bool,
+    /// Its surfaces bound bodies that scatter.
+    pub scatters: bool,
+    /// Its surfaces bound bodies in a scene with media.
+    pub body: bool,
 }
 
 /// The lights of a kind.

@@ -1,9 +1,10 @@
 //! What the materials of a scene amount to.
 
 use residual_render::program::Program;
+use residual_render::tracer::MediaNode;
 
 use super::planned::MaterialUse;
-use crate::desc::Dismissed;
+use crate::desc::{Dismissed, Warning};
 
 /// What a triangle's material amounts to.
 #[derive(Debug, Clone)]
@@ -24,8 +25,11 @@ pub(super) struct Materials {
     pub(super) programs: Vec<Program>,
     pub(super) uses: Vec<Vec<MaterialUse>>,
     pub(super) params: Vec<u32>,
-    /// What [`Buffer::Media`](residual_render::domain::Buffer::Media) holds; nothing where nothing absorbs.
-    pub(super) media: Vec<u32>,
+    /// The media that paths meet.
+    pub(super) media: Option<MediaNode>,
+    /// What [`Buffer::Media`](residual_render::domain::Buffer::Media) holds; nothing where paths meet none.
+    pub(super) media_words: Vec<u32>,
+    pub(super) warnings: Vec<Warning>,
     /// By the material's index in the description.
     pub(super) planned: Vec<Option<PlannedMaterial>>,
     pub(super) dismissed: Vec<Dismissed>,

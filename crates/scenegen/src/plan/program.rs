@@ -5,6 +5,7 @@ use residual_render::program::{
 };
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
+use residual_render::tracer::AnyNesting;
 
 use super::opacity::Opacity;
 use super::sources::Sources;
@@ -17,6 +18,8 @@ pub(super) struct Builder<'a> {
     pub(super) inputs: Vec<InputNode>,
     /// The material's surfaces are closed.
     pub(super) encloses: bool,
+    /// How bodies lie to each other.
+    pub(super) nesting: AnyNesting,
 }
 
 impl Builder<'_> {

@@ -14,7 +14,7 @@ use residual_render::program::{
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
-use residual_render::tracer::{Between, DebugView, TracerNode};
+use residual_render::tracer::{AnyNesting, Between, DebugView, MatterNode, MediaNode, TracerNode};
 use residual_wgsl::{Arithmetic, Binding, KernelSet, Mapping, function_module, scene_module};
 
 use crate::naga_checks::{accept, no_dead_code};
@@ -141,21 +141,30 @@ fn every_tracer_and_layer() {
     }
 }
 
-/// Absorption and dispersion are printed where a scene has them, and nowhere else.
+/// Media and dispersion are printed where a scene has them, and nowhere else.
 #[test]
 fn what_paths_meet_between_surfaces() {
-    for (absorption, dispersion) in [(false, false), (true, false), (false, true), (true, true)] {
+    let media = |nesting, matter| Some(MediaNode { nesting, matter });
+    let all_media = [
+        None,
+        media(AnyNesting::Beside, MatterNode::Absorption),
+        media(AnyNesting::Beside, MatterNode::AbsorptionAndScattering),
+        media(AnyNesting::Nested, MatterNode::Absorption),
+        media(AnyNesting::Nested, MatterNode::AbsorptionAndScattering),
+    ];
+    let both = [false, true].map(|dispersion| all_media.map(|media| (media, dispersion)));
+    for (media, dispersion) in both.into_iter().flatten() {
         let mut scene = everything();
-        scene.between = Between {
-            absorption,
-            dispersion,
-        };
+        scene.between = Between { media, dispersion };
         let mut glass = program(BsdfNode::Dielectric {
             transmittance: Input(0),
             ior: Input(3),
-            interface: AnyInterface::Solid,
+            interface: match scene.between.nests() {
+                true => AnyInterface::SolidAmongSolids,
+                false => AnyInterface::Solid,
+            },
         });
-        glass.interior = absorption.then_some(8);
+        glass.interior = media.map(|_| 8);
         if dispersion {
             let ior = ScalarNode::Dispersive {
                 ior: Box::new(ScalarNode::Param(6)),
@@ -166,7 +175,7 @@ fn what_paths_meet_between_surfaces() {
         scene.programs.push(glass);
         let text = scene_module(&scene);
         no_dead_code(&text);
-        assert_eq!(text.contains("bases.media"), absorption);
+        assert_eq!(text.contains("bases.media"), media.is_some());
     }
 }
 

@@ -150,9 +150,9 @@ impl Code {
         }
     }
 
-    /// `let name = self;` in lines.
-    pub(super) fn bind(&self, name: &str, indent: usize) -> String {
-        let start = format!("let {name} =");
+    /// `what = self;` in lines.
+    pub(super) fn defines(&self, what: &str, indent: usize) -> String {
+        let start = format!("{what} =");
         let inner = indent + LEVEL;
         let column = indent + start.len() + 1;
         match self.one_line() {

@@ -60,8 +60,13 @@ impl Module {
 
     /// `let name = code;` in lines.
     pub(super) fn bind(&mut self, name: &str, code: &Code, indent: usize) -> String {
+        self.define(&format!("let {name}"), code, indent)
+    }
+
+    /// `what = code;` in lines.
+    pub(super) fn define(&mut self, what: &str, code: &Code, indent: usize) -> String {
         self.import_names(code);
-        code.bind(name, indent)
+        code.defines(what, indent)
     }
 
     fn import_names(&mut self, code: &Code) {
@@ -109,7 +114,8 @@ impl Module {
             return format!("{indent}use {path}::{name};\n");
         }
         let line = format!("{indent}use {path}::{{{}}};\n", names.join(", "));
-        if line.len() - 1 <= WIDTH {
+        // A list of names that just fits is broken all the same.
+        if line.len() - 1 < WIDTH {
             return line;
         }
         let inner = " ".repeat(self.indent + super::layout::LEVEL);

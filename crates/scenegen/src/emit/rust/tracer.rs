@@ -4,7 +4,7 @@ use std::fmt::{self, Write as _};
 
 use residual_render::layer::Layers;
 use residual_render::program::Structure;
-use residual_render::tracer::{AnyMis, TracerNode};
+use residual_render::tracer::{AnyMis, MatterNode, MediaNode, TracerNode};
 
 use super::layout::{Code, Name};
 use super::module::Module;
@@ -33,6 +33,30 @@ fn weights(mis: AnyMis) -> Code {
     Code::Word(Name::of("tracer", format!("{mis:?}")))
 }
 
+fn nesting(media: MediaNode) -> Code {
+    Code::Word(Name::of("tracer", format!("{:?}", media.nesting)))
+}
+
+/// What media do, as a type.
+fn matter_type(structure: &Structure, media: MediaNode) -> Code {
+    let name = Name::of("tracer", format!("{:?}", media.matter));
+    match media.matter {
+        MatterNode::Absorption => Code::Word(name),
+        MatterNode::AbsorptionAndScattering => Code::generic(name, [sampler(structure)]),
+    }
+}
+
+/// What media do, as a value.
+fn matter(structure: &Structure, media: MediaNode) -> Code {
+    let name = Name::of("tracer", format!("{:?}", media.matter));
+    match media.matter {
+        MatterNode::Absorption => Code::Word(name),
+        MatterNode::AbsorptionAndScattering => {
+            Code::literal(name, [("sampler", sampler(structure))])
+        }
+    }
+}
+
 /// The associated type of the tracer.
 pub(super) fn associated_type(out: &mut Module, structure: &Structure) -> fmt::Result {
     let mut parameters = vec![Code::word("D"), sampler(structure)];
@@ -40,8 +64,9 @@ pub(super) fn associated_type(out: &mut Module, structure: &Structure) -> fmt::R
         parameters.push(weights(mis));
     }
     let mut tracer = Code::generic(name(structure.tracer), parameters);
-    if structure.between.absorption {
-        tracer = Code::generic(Name::of("tracer", "Absorbing"), [tracer]);
+    if let Some(media) = structure.between.media {
+        let parameters = [tracer, nesting(media), matter_type(structure, media)];
+        tracer = Code::generic(Name::of("tracer", "InMedia"), parameters);
     }
     if structure.between.dispersion {
         let parameters = [tracer, sampler(structure)];
@@ -55,9 +80,8 @@ pub(super) fn associated_type(out: &mut Module, structure: &Structure) -> fmt::R
             Code::generic(Name::of("tracer", "Layered"), [tracer, layers])
         }
     };
-    let start = "    type Tracer = ";
-    let tracer = out.lines(&tracer, 4, start.len(), 1);
-    writeln!(out, "{start}{tracer};")
+    let line = out.define("type Tracer", &tracer, 4);
+    writeln!(out, "    {line}")
 }
 
 /// The method that gives the tracer.
@@ -76,8 +100,13 @@ pub(super) fn method(out: &mut Module, structure: &Structure) -> fmt::Result {
         }
     }
     let mut tracer = Code::literal(name(structure.tracer), fields);
-    if structure.between.absorption {
-        tracer = Code::literal(Name::of("tracer", "Absorbing"), [("tracer", tracer)]);
+    if let Some(media) = structure.between.media {
+        let fields = [
+            ("tracer", tracer),
+            ("nesting", nesting(media)),
+            ("matter", matter(structure, media)),
+        ];
+        tracer = Code::literal(Name::of("tracer", "InMedia"), fields);
     }
     if structure.between.dispersion {
         let fields = [("tracer", tracer), ("sampler", sampler(structure))];

@@ -70,6 +70,24 @@ impl<'a> ExtensionMembers<'a> {
         [factor, texture]: [&str; 2],
         default: [f32; 3],
     ) -> Result<ColorInput, Fault> {
+        Ok(ColorInput {
+            factor: self.factor(members, factor, default),
+            texture: self.texture(members, texture)?,
+        })
+    }
+
+    /// Whether a member is given.
+    pub(super) fn has(&self, member: &str) -> bool {
+        self.content.contains_key(member)
+    }
+
+    /// A colour without a texture.
+    pub(super) fn factor(
+        &self,
+        members: &mut Members<'_, '_>,
+        factor: &str,
+        default: [f32; 3],
+    ) -> [f32; 3] {
         let given = self.content.get(factor);
         let numbers = given.and_then(|value| {
             let [r, g, b] = value.as_array()?.as_slice() else {
@@ -81,10 +99,7 @@ impl<'a> ExtensionMembers<'a> {
             members.warn(format!("{factor} is no colour; {default:?} is used"));
         }
         let color = numbers.unwrap_or(default);
-        Ok(ColorInput {
-            factor: members.color(factor, color, 0.0..=1.0, default[0]),
-            texture: self.texture(members, texture)?,
-        })
+        members.color(factor, color, 0.0..=1.0, default[0])
     }
 
     /// A normal map.

@@ -15,8 +15,6 @@ enum Support {
     Imported,
     /// It has no effect on a still image.
     WithoutEffect,
-    /// An effect of materials that is not rendered, and is there where this member is not 0.
-    MaterialSwitch(&'static str),
     /// Not rendered, and whoever comes upon its use says so.
     ReportedWhereUsed,
     /// None of these.
@@ -46,6 +44,7 @@ impl Support {
             | "KHR_materials_unlit"
             | "KHR_materials_variants"
             | "KHR_materials_volume"
+            | "KHR_materials_volume_scatter"
             | "KHR_mesh_quantization"
             | "KHR_node_visibility"
             | "KHR_texture_basisu"
@@ -57,7 +56,6 @@ impl Support {
             | "KHR_animation_pointer"
             | "KHR_xmp"
             | "KHR_xmp_json_ld" => Self::WithoutEffect,
-            "KHR_materials_volume_scatter" => Self::MaterialSwitch("multiscatterColor"),
             "MSFT_texture_dds" => Self::ReportedWhereUsed,
             _ => Self::Unknown,
         }
@@ -69,7 +67,7 @@ pub(super) fn check_required(root: &Root, file: &Path) -> Result<(), ImportError
     for extension in &root.extensions_required {
         match Support::of(extension) {
             Support::Imported | Support::WithoutEffect => {}
-            Support::MaterialSwitch(_) | Support::ReportedWhereUsed | Support::Unknown => {
+            Support::ReportedWhereUsed | Support::Unknown => {
                 return Err(ImportError::UnsupportedExtension {
                     file: file.to_owned(),
                     extension: extension.clone(),
@@ -124,17 +122,11 @@ pub(super) fn warn_about_material(
     place: &str,
     warnings: &mut Warnings,
 ) {
-    for (extension, content) in others {
-        let is_effective = match Support::of(extension) {
-            Support::MaterialSwitch(member) => content.get(member).is_some_and(is_not_zero),
+    for extension in others.keys() {
+        match Support::of(extension) {
             // Whoever reads it says what it lacks.
             Support::Imported => continue,
-            Support::WithoutEffect | Support::ReportedWhereUsed | Support::Unknown => true,
-        };
-        if !is_effective {
-            let reason = without_effect(extension);
-            warnings.dismiss(None, place, reason);
-            continue;
+            Support::WithoutEffect | Support::ReportedWhereUsed | Support::Unknown => {}
         }
         warnings.push(
             place,
@@ -166,12 +158,4 @@ pub(super) fn warn_about_others(
 /// Why an extension changes nothing whose factor is 0.
 pub(super) fn without_effect(extension: &str) -> String {
     format!("{extension} is there, and its factor is 0")
-}
-
-fn is_not_zero(value: &Value) -> bool {
-    match value {
-        Value::Number(number) => number.as_f64() != Some(0.0),
-        Value::Array(items) => items.iter().any(is_not_zero),
-        Value::Null | Value::Bool(_) | Value::String(_) | Value::Object(_) => false,
-    }
 }

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use super::extension_members::ExtensionMembers;
 use super::extensions;
 use super::members::Members;
-use crate::desc::MetallicRoughness;
+use crate::desc::{MetallicRoughness, Scattering};
 use crate::effect::Effect;
 use crate::import::error::Fault;
 
@@ -31,6 +31,9 @@ pub(super) fn read(
             ],
             [1.0; 3],
         )?;
+    }
+    if let Some(extension) = of("KHR_materials_volume_scatter") {
+        surface.scattering = scattering(&extension, members);
     }
     if let Some(extension) = of("KHR_materials_dispersion") {
         surface.dispersion = extension.number(members, "dispersion", (0.0..=f32::MAX, 0.0));
@@ -96,6 +99,27 @@ pub(super) fn read(
     Ok(surface)
 }
 
+/// KHR_materials_volume_scatter, of which there are two drafts: the colour's member is named in both ways.
+fn scattering(
+    extension: &ExtensionMembers<'_>,
+    members: &mut Members<'_, '_>,
+) -> Option<Scattering> {
+    let of_draft = |member: &&str| extension.has(member);
+    let member = ["multiscatterColorFactor", "multiscatterColor"]
+        .into_iter()
+        .find(of_draft);
+    let color = extension.factor(members, member.unwrap_or("multiscatterColor"), [0.0; 3]);
+    if extension.has("multiscatterColorTexture") {
+        members
+            .warn("multiscatterColorTexture is ignored: bodies are the same throughout".to_owned());
+    }
+    let anisotropy = extension.number(members, "scatterAnisotropy", (-0.99..=0.99, 0.0));
+    (color != [0.0; 3]).then_some(Scattering {
+        multiscatter_color: color,
+        anisotropy,
+    })
+}
+
 /// Notes the extensions whose factor is 0.
 fn dismiss_without_effect(
     surface: &MetallicRoughness,
@@ -107,6 +131,14 @@ fn dismiss_without_effect(
             "KHR_materials_diffuse_transmission",
             Effect::DiffuseTransmission,
             surface.diffuse_transmission.factor,
+        ),
+        (
+            "KHR_materials_volume_scatter",
+            Effect::ScatteringMedia,
+            match (surface.attenuation, surface.scattering) {
+                (Some(_), Some(_)) => 1.0,
+                _ => 0.0,
+            },
         ),
         (
             "KHR_materials_dispersion",

@@ -5,6 +5,8 @@ use gltf::json::extensions::material::{
     Ior, Material as Extensions, PbrSpecularGlossiness, Volume,
 };
 
+use serde_json::Value;
+
 use super::layers;
 use super::members::Members;
 use crate::desc::{Attenuation, ColorInput, MetallicRoughness, ScalarInput, SurfaceDesc};
@@ -133,6 +135,7 @@ fn metallic_roughness(
         },
         solid,
         attenuation,
+        priority: priority(material, members),
         ..MetallicRoughness::default()
     };
     layers::read(surface, &extensions.others, members)
@@ -170,6 +173,27 @@ fn volume(members: &mut Members<'_, '_>, volume: Option<&Volume>) -> (bool, Opti
         distance,
     };
     (thickness > 0.0, Some(attenuation))
+}
+
+/// `extras.priority`, a whole number: glTF has no member for it, and this is what other renderers call it; as there, the higher
+/// goes before.
+fn priority(material: &Material, members: &mut Members<'_, '_>) -> i32 {
+    let extras = material.extras.as_ref();
+    let extras = extras.and_then(|json| serde_json::from_str::<Value>(json.get()).ok());
+    let Some(given) = extras.as_ref().and_then(|extras| extras.get("priority")) else {
+        return 0;
+    };
+    let number = given.as_f64().filter(|number| number.fract() == 0.0);
+    let number = number.filter(|number| number.abs() <= f64::from(i32::MAX));
+    number.map_or_else(
+        || {
+            members.warn(format!(
+                "extras.priority {given} is no whole number; 0 is used"
+            ));
+            0
+        },
+        |number| number as i32,
+    )
 }
 
 /// KHR_materials_ior: 0, which stands for Fresnel 1, or at least 1.
