@@ -170,7 +170,7 @@ mod simd;
 mod trace;
 
 pub use bounds::Bounds;
-pub use build::{BuildQuality, build, build_with_progress};
+pub use build::{BuildQuality, build, build_compact, build_with_progress};
 pub use dispatch::HasKernels;
 pub use filter::{AllHits, Culling, FrontHits, HitFilter, MarkedHits};
 pub use instances::instance::{Instance, InstanceFault, InvalidInstance};
@@ -178,7 +178,9 @@ pub use instances::instanced_bvh::InstancedBvh;
 pub use instances::query::{InstanceHit, any_instance_hit, closest_instance_hit};
 pub use layout::boxes::Boxes;
 pub use layout::bvh::{Bvh, BvhView};
+pub use layout::compact::{CompactBvh, CompactPacket, LeafTooLarge};
 pub use layout::node::WideNode;
+pub use layout::packet::Packet;
 pub use layout::quantized::{QuantizedBvh, QuantizedNode};
 pub use layout::serial::LoadError;
 pub use layout::triangle_packet::TrianglePacket;

@@ -28,8 +28,8 @@ impl Test for Fast {
         triangles: impl Triangles<S, W>,
         culling: Culling,
     ) -> u32 {
-        let corners = corners(simd, rays, &triangles);
-        sides(simd, weights(simd, &corners), culling).lanes
+        let corners = triangles.sheared::<Fused>(simd, rays);
+        sides(simd, weights(simd, &corners), culling).lanes & triangles.used(simd)
     }
 
     #[inline(always)]
@@ -42,9 +42,9 @@ impl Test for Fast {
         culling: Culling,
         ending: E,
     ) -> Option<LaneHits<S, W>> {
-        let corners @ [a, b, c] = corners(simd, rays, &triangles);
+        let corners @ [a, b, c] = triangles.sheared::<Fused>(simd, rays);
         let [w, u, v] = weights(simd, &corners);
-        let inside = sides(simd, [w, u, v], culling);
+        let inside = sides(simd, [w, u, v], culling).among(triangles.used(simd));
         if E::EARLY && inside.lanes == 0 {
             return None;
         }
@@ -59,17 +59,6 @@ impl Test for Fast {
         };
         hits.within(simd, rays.tmin, tmax, ending)
     }
-}
-
-/// The corners, sheared.
-#[inline(always)]
-fn corners<S: Width<W>, const W: usize>(
-    simd: S,
-    rays: &Shear<'_, S, W>,
-    triangles: &impl Triangles<S, W>,
-) -> [[S::Float; 3]; 3] {
-    let corner = |vertex| triangles.sheared::<Fused>(simd, rays, vertex);
-    [corner(0), corner(1), corner(2)]
 }
 
 /// Twice the signed areas opposite to each corner.

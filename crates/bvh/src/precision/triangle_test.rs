@@ -50,8 +50,19 @@ pub(crate) mod sealed {
 pub(crate) struct Inside {
     /// On the sides of interest.
     pub(crate) lanes: u32,
-    /// From behind.
+    /// From behind; meaningful in those lanes.
     pub(crate) back: u32,
+}
+
+impl Inside {
+    /// Only in these lanes.
+    #[inline(always)]
+    pub(crate) fn among(self, lanes: u32) -> Inside {
+        Inside {
+            lanes: self.lanes & lanes,
+            back: self.back,
+        }
+    }
 }
 
 /// Inside a triangle the three weights have the same sign, or are zero; in front it is positive.

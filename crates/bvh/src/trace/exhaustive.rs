@@ -154,8 +154,8 @@ impl<'a, S: Width<LANES>> Sheared<'a, S> {
 
 impl<S: Width<LANES>> Triangles<S, LANES> for Sheared<'_, S> {
     #[inline(always)]
-    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
-        simd.splat(self.corners(0)[vertex % 3][axis % 3])
+    fn used(&self, _: S) -> u32 {
+        u32::MAX
     }
 
     #[inline(always)]
@@ -164,7 +164,7 @@ impl<S: Width<LANES>> Triangles<S, LANES> for Sheared<'_, S> {
     }
 
     #[inline(always)]
-    fn sheared<K: Shearing>(&self, _: S, _: &Shear<'_, S, LANES>, vertex: usize) -> [S::Float; 3] {
-        self.sheared[self.corners[vertex % 3]]
+    fn sheared<K: Shearing>(&self, _: S, _: &Shear<'_, S, LANES>) -> [[S::Float; 3]; 3] {
+        self.corners.map(|vertex| self.sheared[vertex])
     }
 }

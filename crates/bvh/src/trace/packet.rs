@@ -14,6 +14,7 @@ use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
 use crate::layout::class::Class;
 use crate::layout::columns::{Columns, greatest};
+use crate::layout::packet::Packet;
 use crate::layout::validate::MAX_DEPTH;
 use crate::precision::triangle::{OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
@@ -26,10 +27,10 @@ use crate::trace::single::{query, search};
 use crate::trace::slab::Slab;
 
 /// What stays the same for all packets of a stream.
-pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F, B, G> {
+pub(crate) struct PacketKernel<'a, S, const N: usize, const P: usize, Pr, F, B, T, G> {
     pub(crate) simd: S,
     pub(crate) precision: Pr,
-    pub(crate) bvh: BvhView<'a, N, P, B>,
+    pub(crate) bvh: BvhView<'a, N, P, B, T>,
     pub(crate) filter: &'a F,
     pub(crate) goal: G,
     /// So many rays of a packet, or fewer, are traced as single rays.
@@ -49,11 +50,12 @@ struct Entry {
 /// As in `stack.rs`: each level leaves at most N - 1 siblings behind.
 const STACK_CAPACITY: usize = MAX_DEPTH * 16;
 
-impl<S, const N: usize, const P: usize, Pr, F, B, G> PacketKernel<'_, S, N, P, Pr, F, B, G>
+impl<S, const N: usize, const P: usize, Pr, F, B, T, G> PacketKernel<'_, S, N, P, Pr, F, B, T, G>
 where
     Pr: Precision,
     F: HitFilter,
     B: Boxes<N>,
+    T: Packet<P>,
     G: Goal,
 {
     /// Traces one ray alone.
@@ -205,7 +207,7 @@ where
         let first = leaf.first_packet();
         for packet in &self.bvh.packets()[first..first + leaf.packet_count()] {
             for lane in 0..P {
-                let prim = packet.prim_ids[lane];
+                let prim = packet.prim_ids()[lane];
                 if prim == u32::MAX {
                     break;
                 }
