@@ -104,6 +104,9 @@
 //! |   8 |                     256 |                    128 |   8 |                           320 |
 //! |  16 |                     448 |                    192 |  16 |                           640 |
 //!
+//! A [`CompactBvh`] has packets of 288 bytes, whose 16 triangles share vertices, and which leaves share: a third to a half of
+//! the memory of [`Bvh<16, 16>`](Bvh) and the same answers, as fast where registers hold sixteen numbers (AVX-512).
+//!
 //! A [`QuantizedBvh`] is a [`Bvh`] with smaller nodes and the same answers.
 //!
 //! ```

@@ -55,6 +55,8 @@ pub trait Width<const N: usize>: fearless_simd::Simd {
     fn select(self, bits: u32, a: Self::Float, b: Self::Float) -> Self::Float;
     /// The least lane; none may be NaN.
     fn least(self, a: Self::Float) -> f32;
+    /// The greatest lane; none may be NaN.
+    fn greatest(self, a: Self::Float) -> f32;
     /// Lane `i` in bit `i`.
     fn bits(self, mask: Self::Mask) -> u32;
     /// Each lane's numbers of three tables of `N`: `[index][table]`. An index has four bits, of which a table of fewer numbers uses
@@ -179,6 +181,10 @@ macro_rules! implement_lanes {
                 a.reduce_min()
             }
             #[inline(always)]
+            fn greatest(self, a: $float<S>) -> f32 {
+                a.reduce_max()
+            }
+            #[inline(always)]
             fn bits(self, mask: $mask<S>) -> u32 {
                 mask.to_bitmask() as u32
             }
@@ -218,6 +224,21 @@ fn load_bytes_8<S: fearless_simd::Simd>(simd: S, array: &[u8; 8]) -> f32x8<S> {
 #[inline(always)]
 fn load_bytes_16<S: fearless_simd::Simd>(simd: S, array: &[u8; 16]) -> f32x16<S> {
     f32x16::load_array(simd, array.map(f32::from))
+}
+
+/// Four rows of four numbers, as columns.
+#[inline(always)]
+pub(crate) fn transposed<S: fearless_simd::Simd>(simd: S, rows: [[f32; 4]; 4]) -> [[f32; 4]; 4] {
+    let [a, b, c, d] = rows;
+    let row = |row: [f32; 4]| f32x4::load_array(simd, row);
+    let (a, b, c, d) = (row(a), row(b), row(c), row(d));
+    let (low, high) = ((a.zip_low(c), b.zip_low(d)), (a.zip_high(c), b.zip_high(d)));
+    [
+        low.0.zip_low(low.1).into(),
+        low.0.zip_high(low.1).into(),
+        high.0.zip_low(high.1).into(),
+        high.0.zip_high(high.1).into(),
+    ]
 }
 
 #[inline(always)]
@@ -398,6 +419,11 @@ macro_rules! implement_narrow_lanes {
             fn least(self, a: [f32; $n]) -> f32 {
                 a.into_iter()
                     .fold(f32::INFINITY, |a, b| if b < a { b } else { a })
+            }
+            #[inline(always)]
+            fn greatest(self, a: [f32; $n]) -> f32 {
+                a.into_iter()
+                    .fold(f32::NEG_INFINITY, |a, b| if b > a { b } else { a })
             }
             #[inline(always)]
             fn bits(self, mask: [bool; $n]) -> u32 {

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::bounds::Bounds;
 use crate::build::binary::{BinaryNode, BinaryTree};
-use crate::build::leaf_size::LeafSize;
+use crate::build::leaf_size::{LeafSize, MAX_LEAF_PACKETS};
 use crate::build::mesh::Mesh;
 use crate::build::reference::Reference;
 use crate::layout::bvh::Bvh;
@@ -24,8 +24,6 @@ use crate::layout::validate::check_nodes;
 
 /// Cost of testing a ray against a packet, in units of testing it against a node.
 pub(crate) const PACKET_COST: f32 = 1.0;
-/// Packets in the largest leaf considered.
-pub(crate) const MAX_LEAF_PACKETS: usize = 4;
 /// Binary nodes of the largest subtree planned as one task.
 const TASK: usize = 1 << 13;
 const _: () = assert!(MAX_LEAF_PACKETS <= Child::MAX_PACKETS);

@@ -1,7 +1,9 @@
 //! How many packets the triangles of a subtree take as one leaf, which is what the leaf costs.
 
-use crate::build::collapse::MAX_LEAF_PACKETS;
-use crate::layout::compact;
+use crate::layout::compact::LANES;
+
+/// Packets in the largest leaf considered.
+pub(crate) const MAX_LEAF_PACKETS: usize = 4;
 
 /// What is known of a subtree's triangles, from its leaves up, until there are too many for a leaf.
 pub(crate) trait LeafSize<const P: usize>: Send + Sized {
@@ -37,7 +39,7 @@ pub(crate) struct Vertices {
     vertices: Option<Vec<[u32; 3]>>,
 }
 
-impl LeafSize<{ compact::LANES }> for Vertices {
+impl LeafSize<LANES> for Vertices {
     fn of_triangle(corners: &[[f32; 3]; 3]) -> Vertices {
         let mut vertices = corners.map(|corner| corner.map(f32::to_bits)).to_vec();
         vertices.sort_unstable();
@@ -58,16 +60,15 @@ impl LeafSize<{ compact::LANES }> for Vertices {
             vertices
         });
         Vertices {
-            triangles: LeafSize::<{ compact::LANES }>::join(self.triangles, other.triangles),
-            vertices: vertices
-                .filter(|vertices| vertices.len() <= MAX_LEAF_PACKETS * compact::LANES),
+            triangles: LeafSize::<LANES>::join(self.triangles, other.triangles),
+            vertices: vertices.filter(|vertices| vertices.len() <= MAX_LEAF_PACKETS * LANES),
         }
     }
 
     /// At least so many: how well the triangles can be distributed is not known yet.
     fn packets(&self) -> Option<usize> {
-        let for_triangles = LeafSize::<{ compact::LANES }>::packets(&self.triangles)?;
-        let for_vertices = self.vertices.as_ref()?.len().div_ceil(compact::LANES);
+        let for_triangles = LeafSize::<LANES>::packets(&self.triangles)?;
+        let for_vertices = self.vertices.as_ref()?.len().div_ceil(LANES);
         Some(for_triangles.max(for_vertices))
     }
 }

@@ -90,4 +90,11 @@ impl<'a, const N: usize, const P: usize, B: Boxes<N>, T: Packet<P>> BvhView<'a, 
     pub fn packets(&self) -> &'a [T] {
         self.packets
     }
+
+    /// Whether all coordinates are so far from overflow that products of two are finite.
+    #[inline(always)]
+    pub(crate) fn is_moderate(&self) -> bool {
+        let root = &self.nodes[0];
+        (0..N).all(|slot| root.child_bounds(slot).is_moderate())
+    }
 }

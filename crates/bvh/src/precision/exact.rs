@@ -9,8 +9,10 @@
 
 use crate::bounds::Bounds;
 use crate::filter::Culling;
+use crate::layout::packet::Packet;
 use crate::precision::ending::Ending;
 use crate::precision::expansion::{self, Pair};
+use crate::precision::shear_bounds::ShearBounds;
 use crate::precision::shearing::Rounded;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
@@ -43,6 +45,18 @@ impl Test for Exact {
         culling: Culling,
     ) -> u32 {
         candidates(simd, rays, &triangles, culling)
+    }
+
+    /// All: signs of rounded numbers say nothing here.
+    #[inline(always)]
+    fn candidates_of_rays<S: Width<W>, const W: usize>(
+        self,
+        _: S,
+        _: &ShearBounds<S, W>,
+        _: &impl Packet<W>,
+        _: Culling,
+    ) -> u32 {
+        u32::MAX
     }
 
     #[inline(always)]

@@ -180,6 +180,18 @@ impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
         }
     }
 
+    /// The order of the axes.
+    #[inline(always)]
+    pub(crate) fn axes(&self) -> Axes {
+        self.axes
+    }
+
+    /// `dir.x / dir.z` and `dir.y / dir.z`.
+    #[inline(always)]
+    pub(crate) fn slope(&self) -> [S::Float; 2] {
+        self.slope
+    }
+
     /// The ray in a lane.
     #[inline(always)]
     pub(crate) fn ray(&self, lane: usize) -> &'a Ray {

@@ -10,7 +10,10 @@ use glam::DVec3;
 
 use crate::bounds::Bounds;
 use crate::filter::Culling;
+use crate::layout::packet::Packet;
 use crate::precision::ending::Ending;
+use crate::precision::interval::product;
+use crate::precision::shear_bounds::{ShearBounds, possible_sides};
 use crate::precision::shearing::Rounded;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
@@ -47,6 +50,22 @@ impl Test for Watertight {
         let corners = triangles.sheared::<Rounded>(simd, rays);
         let weights = products(simd, &corners).map(|(p, q)| simd.sub(p, q));
         sides(simd, weights, culling).lanes & triangles.used(simd)
+    }
+
+    #[inline(always)]
+    fn candidates_of_rays<S: Width<W>, const W: usize>(
+        self,
+        simd: S,
+        rays: &ShearBounds<S, W>,
+        packet: &impl Packet<W>,
+        culling: Culling,
+    ) -> u32 {
+        let [a, b, c] = rays.sheared::<Rounded>(simd, packet);
+        let weights = [(c, b), (a, c), (b, a)].map(|(p, q)| {
+            let (plus, minus) = (product(simd, p[0], q[1]), product(simd, p[1], q[0]));
+            [simd.sub(plus[0], minus[1]), simd.sub(plus[1], minus[0])]
+        });
+        possible_sides(simd, weights, culling)
     }
 
     #[inline(always)]

@@ -9,7 +9,7 @@
 
 use crate::filter::HitFilter;
 use crate::layout::class::{AXES, Axes, axes_index};
-use crate::layout::columns::{Columns, greatest};
+use crate::layout::columns::Columns;
 use crate::precision::shearing::Shearing;
 use crate::precision::triangle::{Shear, Triangles};
 use crate::precision::triangle_test::Precision;
@@ -113,7 +113,7 @@ impl<S, Pr: Precision, F: HitFilter, G: Goal> ExhaustiveKernel<'_, S, Pr, F, G> 
                 self.filter,
                 self.goal,
             );
-            if G::ANY && found && greatest(best.t) < 0.0 {
+            if G::ANY && found && best.farthest(simd) < 0.0 {
                 break;
             }
         }

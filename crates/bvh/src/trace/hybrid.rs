@@ -58,6 +58,7 @@ where
             bvh,
             filter,
             goal,
+            is_moderate: bvh.is_moderate(),
             few: R as u32 / 4,
         };
         let phased = PhasedKernel {

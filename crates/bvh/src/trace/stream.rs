@@ -169,6 +169,7 @@ where
             bvh,
             filter,
             goal: ClosestHit,
+            is_moderate: bvh.is_moderate(),
             few: 0,
         };
         for (rays, hits) in rays.chunks(WINDOW).zip(hits.chunks_mut(WINDOW)) {
@@ -193,6 +194,7 @@ where
             bvh,
             filter,
             goal: AnyHit,
+            is_moderate: bvh.is_moderate(),
             few: 0,
         };
         let mut hits = [Hit::miss(0.0); WINDOW];

@@ -106,7 +106,10 @@ where
         const { assert!(R <= 32) };
         for (rays, hits) in rays.chunks(R).zip(hits.chunks_mut(R)) {
             let members = &IN_ORDER[..rays.len()];
-            let columns = Columns::<R>::gather(rays, members);
+            let columns = match rays.as_array::<R>() {
+                Some(rays) => Columns::of(self.simd, rays),
+                None => Columns::<R>::gather(rays, members),
+            };
             match columns.class(self.simd) {
                 Some(class) => self.trace(columns, rays, members, class, hits),
                 None => self.sort::<R>(rays, hits),
