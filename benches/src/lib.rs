@@ -24,6 +24,7 @@ pub mod mitsuba;
 pub mod ours;
 pub mod peers;
 pub mod rays;
+pub mod recorded;
 pub mod reference;
 pub mod render;
 pub mod report;

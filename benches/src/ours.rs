@@ -9,7 +9,8 @@ use std::rc::Rc;
 
 use clap::ValueEnum;
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Hybrid, Kernel as _, OneByOne, Packets, Phased, Single, build,
+    AllHits, BuildQuality, Bvh, CompactBvh, Hybrid, Kernel as _, OneByOne, Packets, Phased, Single,
+    build, build_compact,
 };
 
 use crate::contender::Stream;
@@ -28,17 +29,20 @@ pub enum Kernel {
     Phased,
     /// Packets that fall apart into single rays, or many rays in flight, as suits the rays.
     Hybrid,
+    /// As hybrid, on packets that share vertices: what renderers of sixteen lanes do.
+    Compact,
     /// One ray, one box.
     Scalar,
 }
 
 impl Kernel {
     /// All, in the order of the tables.
-    pub const ALL: [Kernel; 5] = [
+    pub const ALL: [Kernel; 6] = [
         Kernel::Single,
         Kernel::Packet,
         Kernel::Phased,
         Kernel::Hybrid,
+        Kernel::Compact,
         Kernel::Scalar,
     ];
 }
@@ -50,6 +54,7 @@ impl fmt::Display for Kernel {
             Kernel::Packet => "packet",
             Kernel::Phased => "phased",
             Kernel::Hybrid => "hybrid",
+            Kernel::Compact => "compact",
             Kernel::Scalar => "scalar",
         })
     }
@@ -96,7 +101,7 @@ pub struct Variant {
 /// All our kernels.
 pub fn variants() -> Vec<Variant> {
     macro_rules! variants {
-        ($($kernel:ident($trace:expr, $packet:literal): $n:literal x $p:literal, $precision:ident;)*) => {
+        ($($kernel:ident($trace:expr, $packet:literal): $tree:ident $n:literal x $p:literal, $precision:ident;)*) => {
             vec![$(Variant {
                 kernel: Kernel::$kernel,
                 width: $n,
@@ -104,7 +109,7 @@ pub fn variants() -> Vec<Variant> {
                 packet: $packet,
                 precision: Precision::$precision,
                 make: |trees, isa| {
-                    let tree = trees.get::<$n, $p>();
+                    let tree = trees.$tree::<$n, $p>();
                     let same = tree.clone();
                     Stream::new(
                         move |rays, hits| {
@@ -121,33 +126,35 @@ pub fn variants() -> Vec<Variant> {
         };
     }
     variants![
-        Single(Single, 1): 4 x 4, Fast;
-        Single(Single, 1): 8 x 8, Fast;
-        Single(Single, 1): 16 x 8, Fast;
-        Single(Single, 1): 16 x 16, Fast;
-        Single(Single, 1): 4 x 4, Watertight;
-        Single(Single, 1): 8 x 8, Watertight;
-        Single(Single, 1): 16 x 8, Watertight;
-        Single(Single, 1): 16 x 16, Watertight;
-        Single(Single, 1): 8 x 8, Exact;
-        Single(Single, 1): 16 x 16, Exact;
-        Packet(Packets::<4>, 4): 4 x 4, Fast;
-        Packet(Packets::<8>, 8): 8 x 8, Fast;
-        Packet(Packets::<16>, 16): 16 x 16, Fast;
-        Phased(Phased, 1): 8 x 8, Fast;
-        Phased(Phased, 1): 16 x 16, Fast;
-        Phased(Phased, 1): 8 x 8, Watertight;
-        Phased(Phased, 1): 16 x 16, Watertight;
-        Hybrid(Hybrid::<4>, 4): 4 x 4, Fast;
-        Hybrid(Hybrid::<8>, 8): 8 x 8, Fast;
-        Hybrid(Hybrid::<16>, 16): 8 x 8, Fast;
-        Hybrid(Hybrid::<16>, 16): 16 x 16, Fast;
-        Hybrid(Hybrid::<8>, 8): 8 x 8, Watertight;
-        Hybrid(Hybrid::<16>, 16): 16 x 16, Watertight;
-        Scalar(OneByOne, 1): 2 x 1, Fast;
-        Scalar(OneByOne, 1): 4 x 4, Fast;
-        Scalar(OneByOne, 1): 8 x 8, Fast;
-        Scalar(OneByOne, 1): 16 x 16, Fast;
+        Single(Single, 1): get 4 x 4, Fast;
+        Single(Single, 1): get 8 x 8, Fast;
+        Single(Single, 1): get 16 x 8, Fast;
+        Single(Single, 1): get 16 x 16, Fast;
+        Single(Single, 1): get 4 x 4, Watertight;
+        Single(Single, 1): get 8 x 8, Watertight;
+        Single(Single, 1): get 16 x 8, Watertight;
+        Single(Single, 1): get 16 x 16, Watertight;
+        Single(Single, 1): get 8 x 8, Exact;
+        Single(Single, 1): get 16 x 16, Exact;
+        Packet(Packets::<4>, 4): get 4 x 4, Fast;
+        Packet(Packets::<8>, 8): get 8 x 8, Fast;
+        Packet(Packets::<16>, 16): get 16 x 16, Fast;
+        Phased(Phased, 1): get 8 x 8, Fast;
+        Phased(Phased, 1): get 16 x 16, Fast;
+        Phased(Phased, 1): get 8 x 8, Watertight;
+        Phased(Phased, 1): get 16 x 16, Watertight;
+        Hybrid(Hybrid::<4>, 4): get 4 x 4, Fast;
+        Hybrid(Hybrid::<8>, 8): get 8 x 8, Fast;
+        Hybrid(Hybrid::<16>, 16): get 8 x 8, Fast;
+        Hybrid(Hybrid::<16>, 16): get 16 x 16, Fast;
+        Hybrid(Hybrid::<8>, 8): get 8 x 8, Watertight;
+        Hybrid(Hybrid::<16>, 16): get 16 x 16, Watertight;
+        Compact(Hybrid::<16>, 16): compact 16 x 16, Fast;
+        Compact(Hybrid::<16>, 16): compact 16 x 16, Watertight;
+        Scalar(OneByOne, 1): get 2 x 1, Fast;
+        Scalar(OneByOne, 1): get 4 x 4, Fast;
+        Scalar(OneByOne, 1): get 8 x 8, Fast;
+        Scalar(OneByOne, 1): get 16 x 16, Fast;
     ]
 }
 
@@ -185,7 +192,7 @@ pub fn build_tree<const N: usize, const P: usize>(
     Tree { bvh, cost }
 }
 
-/// A mesh's hierarchies of [`BuildQuality::Best`], each built when it is first asked for.
+/// A mesh's hierarchies, each built when it is first asked for: of [`BuildQuality::Best`], or as renderers build them.
 pub struct Trees<'m> {
     mesh: &'m Mesh,
     built: RefCell<HashMap<TypeId, Rc<dyn Any>>>,
@@ -202,13 +209,30 @@ impl<'m> Trees<'m> {
 
     /// The hierarchy with `N` children a node and `P` triangles a packet.
     pub fn get<const N: usize, const P: usize>(&self) -> Rc<Tree<N, P>> {
+        self.kept(|mesh| build_tree::<N, P>(mesh, BuildQuality::Best))
+    }
+
+    /// The hierarchy whose packets share vertices, of [`BuildQuality::High`].
+    fn compact<const N: usize, const P: usize>(&self) -> Rc<Compact<N>> {
+        const { assert!(P == 16) };
+        self.kept(|mesh| Compact {
+            bvh: build_compact(&mesh.positions, &mesh.triangles, None, BuildQuality::High),
+        })
+    }
+
+    fn kept<T: 'static>(&self, build: impl FnOnce(&Mesh) -> T) -> Rc<T> {
         let mut built = self.built.borrow_mut();
         let tree = built
-            .entry(TypeId::of::<Tree<N, P>>())
-            .or_insert_with(|| Rc::new(build_tree::<N, P>(self.mesh, BuildQuality::Best)))
+            .entry(TypeId::of::<T>())
+            .or_insert_with(|| Rc::new(build(self.mesh)))
             .clone();
         tree.downcast().expect("trees are kept under their type")
     }
+}
+
+/// A hierarchy whose packets share vertices.
+struct Compact<const N: usize> {
+    bvh: CompactBvh<N>,
 }
 
 /// A build to be timed.

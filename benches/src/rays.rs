@@ -21,22 +21,28 @@ pub enum RayKind {
     Diffuse,
     /// Rays that miss the box around everything: what a call costs.
     Miss,
+    /// Of a render: those that paths are followed by, after the camera's.
+    Bounce,
+    /// Of a render: those towards lights; any hit.
+    Shadow,
 }
 
 impl RayKind {
     /// All, in the order of the tables.
-    pub const ALL: [RayKind; 4] = [
+    pub const ALL: [RayKind; 6] = [
         RayKind::Primary,
         RayKind::Ao,
         RayKind::Diffuse,
         RayKind::Miss,
+        RayKind::Bounce,
+        RayKind::Shadow,
     ];
 
     /// What is asked about these rays.
     pub fn query(self) -> Query {
         match self {
-            RayKind::Ao => Query::Any,
-            RayKind::Primary | RayKind::Diffuse | RayKind::Miss => Query::Closest,
+            RayKind::Ao | RayKind::Shadow => Query::Any,
+            RayKind::Primary | RayKind::Diffuse | RayKind::Miss | RayKind::Bounce => Query::Closest,
         }
     }
 }
@@ -48,6 +54,8 @@ impl fmt::Display for RayKind {
             RayKind::Ao => "ao",
             RayKind::Diffuse => "diffuse",
             RayKind::Miss => "miss",
+            RayKind::Bounce => "bounce",
+            RayKind::Shadow => "shadow",
         })
     }
 }
@@ -67,16 +75,20 @@ const AO_REACH: f32 = 0.2;
 /// Where spawned rays begin, as a part of the box's diagonal.
 const EPSILON: f32 = 1e-4;
 
-/// The rays of all kinds. There are as many spawned rays as primary ones that hit.
+/// The rays of all kinds that a mesh and a view are enough for. There are as many spawned rays as primary ones that hit.
 pub fn ray_sets(scene: &Scene, size: [u32; 2]) -> Vec<RaySet> {
     let primary = primary(&scene.view, size);
     let hits = scene.reference.closest(&primary);
     let ao = spawned(&primary, &hits, scene, AO_REACH * scene.diagonal);
     let diffuse = spawned(&primary, &hits, scene, f32::INFINITY);
     let miss = missing(primary.len(), scene);
-    RayKind::ALL
-        .into_iter()
-        .zip([primary, ao, diffuse, miss])
+    let made = [
+        (RayKind::Primary, primary),
+        (RayKind::Ao, ao),
+        (RayKind::Diffuse, diffuse),
+        (RayKind::Miss, miss),
+    ];
+    made.into_iter()
         .map(|(kind, rays)| {
             let hits = scene.reference.closest(&rays);
             RaySet {

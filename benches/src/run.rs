@@ -13,6 +13,7 @@ use crate::measure::{Measured, Pinned, interleaved};
 use crate::ours::{self, Kernel, Precision, Trees};
 use crate::peers;
 use crate::rays::{RayKind, RaySet, ray_sets};
+use crate::recorded::recorded_sets;
 use crate::report::{BuildRow, Comparison, Label, Row};
 use crate::scene::Scene;
 
@@ -96,17 +97,24 @@ pub fn traversal(options: &Options, mut report: impl FnMut(SceneReport)) -> Resu
             view.eye,
             view.rotation * glam::Vec3::NEG_Z
         );
-        report(measure(&scene, embree.as_ref(), options));
+        report(measure(&scene, embree.as_ref(), options)?);
     }
     Ok(())
 }
 
-fn measure(scene: &Scene, embree: Option<&Rc<Embree>>, options: &Options) -> SceneReport {
+fn measure(scene: &Scene, embree: Option<&Rc<Embree>>, options: &Options) -> Result<SceneReport> {
     let _pinned = Pinned::new();
     let trees = Trees::new(&scene.mesh);
     let entries = entries(scene, &trees, embree, options);
     let mut traces = Vec::new();
-    for set in ray_sets(scene, options.size) {
+    let mut sets = ray_sets(scene, options.size);
+    if [RayKind::Bounce, RayKind::Shadow]
+        .iter()
+        .any(|kind| is_wanted(&options.rays, kind))
+    {
+        sets.extend(recorded_sets(scene, options.size)?);
+    }
+    for set in sets {
         if is_wanted(&options.rays, &set.kind) && !set.rays.is_empty() {
             traces.extend(rows(scene, &set, &entries, options));
         }
@@ -116,12 +124,12 @@ fn measure(scene: &Scene, embree: Option<&Rc<Embree>>, options: &Options) -> Sce
     } else {
         Vec::new()
     };
-    SceneReport {
+    Ok(SceneReport {
         scene: scene.name.clone(),
         triangles: scene.mesh.triangles.len(),
         traces,
         builds,
-    }
+    })
 }
 
 fn is_wanted<T: PartialEq>(wanted: &[T], one: &T) -> bool {
@@ -158,7 +166,7 @@ fn entries(
         entries.push(peer("obvhs-bvh2", peers::bvh2(&scene.mesh)));
         entries.push(peer("obvhs-cwbvh", peers::cwbvh(&scene.mesh)));
     }
-    let is_bundle = |kernel| matches!(kernel, Kernel::Packet | Kernel::Hybrid);
+    let is_bundle = |kernel| matches!(kernel, Kernel::Packet | Kernel::Hybrid | Kernel::Compact);
     let robust_packets = variants
         .iter()
         .any(|variant| is_bundle(variant.kernel) && variant.precision != Precision::Fast);

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Result, ensure};
 use glam::{Quat, Vec3};
 use residual_bvh::Ray;
-use residual_scenegen::desc::{CameraDesc, Projection};
+use residual_scenegen::desc::{CameraDesc, Projection, SceneDesc};
 use residual_scenegen::import::{ImportOptions, import};
 
 use crate::mesh::Mesh;
@@ -32,6 +32,8 @@ pub struct Scene {
     pub view: View,
     /// Answers for making rays and for checking contenders.
     pub reference: Reference,
+    /// What the file says, if there is one.
+    pub description: Option<SceneDesc>,
     /// Length of the diagonal of the box around it.
     pub diagonal: f32,
 }
@@ -41,6 +43,7 @@ impl Scene {
     /// middle sees mostly fronts of triangles, and otherwise from the front.
     pub fn load(path: &Path) -> Result<Scene> {
         let scene = import(path, &ImportOptions::default())?;
+        let name = scene.name.clone();
         let mesh = Mesh::of(&scene);
         ensure!(
             !mesh.triangles.is_empty(),
@@ -48,7 +51,10 @@ impl Scene {
             path.display()
         );
         let camera = scene.cameras.iter().find_map(perspective);
-        Ok(Scene::new(scene.name, mesh, camera))
+        Ok(Scene {
+            description: Some(scene),
+            ..Scene::new(name, mesh, camera)
+        })
     }
 
     /// A mesh with a view, or with one made from its box.
@@ -69,6 +75,7 @@ impl Scene {
             mesh,
             view,
             reference,
+            description: None,
             diagonal: (hi - lo).length(),
         }
     }

@@ -38,6 +38,9 @@ const PAD_EXTENT: f32 = 1.0 / (1 << 16) as f32;
 const PAD_COORDINATE: f32 = f32::EPSILON;
 
 impl Bounds {
+    /// Products of two sums of some such numbers are finite.
+    pub(crate) const MODERATE: f32 = (1u64 << 60) as f32;
+
     /// The box that contains nothing.
     pub const EMPTY: Bounds = Bounds {
         lo: [f32::INFINITY; 3],
@@ -51,6 +54,11 @@ impl Bounds {
             lo: std::array::from_fn(|axis| self.lo[axis].min(other.lo[axis])),
             hi: std::array::from_fn(|axis| self.hi[axis].max(other.hi[axis])),
         }
+    }
+
+    /// Whether all coordinates are so far from overflow that products of two differences are finite. The empty box is.
+    pub(crate) fn is_moderate(&self) -> bool {
+        (0..3).all(|axis| self.lo[axis] > -Bounds::MODERATE && self.hi[axis] < Bounds::MODERATE)
     }
 
     /// Whether `other` lies inside; the empty box lies inside every box.

@@ -104,6 +104,9 @@
 //! |   8 |                     256 |                    128 |   8 |                           320 |
 //! |  16 |                     448 |                    192 |  16 |                           640 |
 //!
+//! A [`CompactBvh`] has packets of 288 bytes, whose 16 triangles share vertices, and which leaves share: a third to a half of
+//! the memory of [`Bvh<16, 16>`](Bvh) and the same answers, as fast where registers hold sixteen numbers (AVX-512).
+//!
 //! A [`QuantizedBvh`] is a [`Bvh`] with smaller nodes and the same answers.
 //!
 //! ```
@@ -170,7 +173,7 @@ mod simd;
 mod trace;
 
 pub use bounds::Bounds;
-pub use build::{BuildQuality, build, build_with_progress};
+pub use build::{BuildQuality, build, build_compact, build_with_progress};
 pub use dispatch::HasKernels;
 pub use filter::{AllHits, Culling, FrontHits, HitFilter, MarkedHits};
 pub use instances::instance::{Instance, InstanceFault, InvalidInstance};
@@ -178,7 +181,9 @@ pub use instances::instanced_bvh::InstancedBvh;
 pub use instances::query::{InstanceHit, any_instance_hit, closest_instance_hit};
 pub use layout::boxes::Boxes;
 pub use layout::bvh::{Bvh, BvhView};
+pub use layout::compact::{CompactBvh, CompactPacket, LeafTooLarge};
 pub use layout::node::WideNode;
+pub use layout::packet::Packet;
 pub use layout::quantized::{QuantizedBvh, QuantizedNode};
 pub use layout::serial::LoadError;
 pub use layout::triangle_packet::TrianglePacket;

@@ -6,7 +6,7 @@
 //! cracks.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x4, f32x8, f32x16, mask32x4, mask32x8, mask32x16, u8x16};
+use fearless_simd::{f32x4, f32x8, f32x16, i16x16, mask32x4, mask32x8, mask32x16, u8x16, u16x16};
 
 /// `N` lanes of `f32` on the instruction set that the token `Self` stands for; `N` is 1, 2, 4, 8
 /// or 16.
@@ -55,8 +55,15 @@ pub trait Width<const N: usize>: fearless_simd::Simd {
     fn select(self, bits: u32, a: Self::Float, b: Self::Float) -> Self::Float;
     /// The least lane; none may be NaN.
     fn least(self, a: Self::Float) -> f32;
+    /// The greatest lane; none may be NaN.
+    fn greatest(self, a: Self::Float) -> f32;
     /// Lane `i` in bit `i`.
     fn bits(self, mask: Self::Mask) -> u32;
+    /// Each lane's numbers of three tables of `N`: `[index][table]`. An index has four bits, of which a table of fewer numbers uses
+    /// the lower; the first index of a lane is in the lowest bits of its word.
+    fn look_up(self, tables: [Self::Float; 3], indices: &[u16; N]) -> [[Self::Float; 3]; 3];
+    /// The highest bit of word `i` in bit `i`.
+    fn high_bits(self, words: &[u16; N]) -> u32;
 }
 
 /// Calls `f` as a function of its own, compiled for the token's instruction set. A kernel that is inlined beside
@@ -88,7 +95,7 @@ impl<const N: usize> Stored<N> {
 const SECOND_OPERAND_WINS: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
 
 macro_rules! implement_lanes {
-    ($n:literal, $float:ident, $mask:ident, $bytes:ident) => {
+    ($n:literal, $float:ident, $mask:ident, $bytes:ident, $look_up:ident, $high_bits:ident) => {
         impl<S: fearless_simd::Simd> Width<$n> for S {
             type Float = $float<S>;
             type Mask = $mask<S>;
@@ -174,8 +181,20 @@ macro_rules! implement_lanes {
                 a.reduce_min()
             }
             #[inline(always)]
+            fn greatest(self, a: $float<S>) -> f32 {
+                a.reduce_max()
+            }
+            #[inline(always)]
             fn bits(self, mask: $mask<S>) -> u32 {
                 mask.to_bitmask() as u32
+            }
+            #[inline(always)]
+            fn look_up(self, tables: [$float<S>; 3], indices: &[u16; $n]) -> [[$float<S>; 3]; 3] {
+                $look_up(self, tables, indices)
+            }
+            #[inline(always)]
+            fn high_bits(self, words: &[u16; $n]) -> u32 {
+                $high_bits(self, words)
             }
         }
     };
@@ -207,9 +226,113 @@ fn load_bytes_16<S: fearless_simd::Simd>(simd: S, array: &[u8; 16]) -> f32x16<S>
     f32x16::load_array(simd, array.map(f32::from))
 }
 
-implement_lanes!(4, f32x4, mask32x4, load_bytes_4);
-implement_lanes!(8, f32x8, mask32x8, load_bytes_8);
-implement_lanes!(16, f32x16, mask32x16, load_bytes_16);
+/// Four rows of four numbers, as columns.
+#[inline(always)]
+pub(crate) fn transposed<S: fearless_simd::Simd>(simd: S, rows: [[f32; 4]; 4]) -> [[f32; 4]; 4] {
+    let [a, b, c, d] = rows;
+    let row = |row: [f32; 4]| f32x4::load_array(simd, row);
+    let (a, b, c, d) = (row(a), row(b), row(c), row(d));
+    let (low, high) = ((a.zip_low(c), b.zip_low(d)), (a.zip_high(c), b.zip_high(d)));
+    [
+        low.0.zip_low(low.1).into(),
+        low.0.zip_high(low.1).into(),
+        high.0.zip_low(high.1).into(),
+        high.0.zip_high(high.1).into(),
+    ]
+}
+
+#[inline(always)]
+fn look_up<S: Width<N>, const N: usize>(
+    simd: S,
+    tables: [S::Float; 3],
+    indices: &[u16; N],
+) -> [[S::Float; 3]; 3] {
+    let tables = tables.map(|table| Stored::of(simd, table).0);
+    [0, 4, 8].map(|shift| {
+        tables.each_ref().map(|table| {
+            simd.load(&indices.map(|index| table[usize::from(index >> shift & 15) % N]))
+        })
+    })
+}
+
+#[inline(always)]
+fn look_up_16<S: fearless_simd::Simd>(
+    simd: S,
+    [x, y, z]: [f32x16<S>; 3],
+    indices: &[u16; 16],
+) -> [[f32x16<S>; 3]; 3] {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx512) = simd.level().as_avx512() {
+        let number = |table: f32x16<S>| f32x16::load_array(avx512, table.into());
+        let indices = u16x16::load_array(avx512, *indices);
+        let [a, b, c] = permute(avx512, number(x), number(y), number(z), indices);
+        let number = |found: f32x16<fearless_simd::Avx512>| f32x16::load_array(simd, found.into());
+        let corner =
+            |[x, y, z]: [f32x16<fearless_simd::Avx512>; 3]| [number(x), number(y), number(z)];
+        return [corner(a), corner(b), corner(c)];
+    }
+    look_up(simd, [x, y, z], indices)
+}
+
+// Written out, since calls of closures would be calls.
+#[cfg(target_arch = "x86_64")]
+fearless_simd::kernel!(
+    #[inline(always)]
+    fn permute(
+        avx512: Avx512,
+        x: f32x16<fearless_simd::Avx512>,
+        y: f32x16<fearless_simd::Avx512>,
+        z: f32x16<fearless_simd::Avx512>,
+        indices: u16x16<fearless_simd::Avx512>,
+    ) -> [[f32x16<fearless_simd::Avx512>; 3]; 3] {
+        use std::arch::x86_64::{_mm512_cvtepu16_epi32, _mm512_permutexvar_ps, _mm512_srli_epi32};
+        // Of each index the instruction uses the four lowest bits.
+        let first = _mm512_cvtepu16_epi32(indices.into());
+        let second = _mm512_srli_epi32::<4>(first);
+        let third = _mm512_srli_epi32::<8>(first);
+        let (x, y, z) = (x.into(), y.into(), z.into());
+        [
+            [
+                _mm512_permutexvar_ps(first, x).simd_into(avx512),
+                _mm512_permutexvar_ps(first, y).simd_into(avx512),
+                _mm512_permutexvar_ps(first, z).simd_into(avx512),
+            ],
+            [
+                _mm512_permutexvar_ps(second, x).simd_into(avx512),
+                _mm512_permutexvar_ps(second, y).simd_into(avx512),
+                _mm512_permutexvar_ps(second, z).simd_into(avx512),
+            ],
+            [
+                _mm512_permutexvar_ps(third, x).simd_into(avx512),
+                _mm512_permutexvar_ps(third, y).simd_into(avx512),
+                _mm512_permutexvar_ps(third, z).simd_into(avx512),
+            ],
+        ]
+    }
+);
+
+#[inline(always)]
+fn high_bits<S, const N: usize>(_: S, words: &[u16; N]) -> u32 {
+    let bits = words.iter().rev();
+    bits.fold(0, |bits, word| bits << 1 | u32::from(word >> 15))
+}
+
+#[inline(always)]
+fn high_bits_16<S: fearless_simd::Simd>(simd: S, words: &[u16; 16]) -> u32 {
+    let words = i16x16::load_array(simd, words.map(u16::cast_signed));
+    words.simd_lt(0i16).to_bitmask() as u32
+}
+
+implement_lanes!(4, f32x4, mask32x4, load_bytes_4, look_up, high_bits);
+implement_lanes!(8, f32x8, mask32x8, load_bytes_8, look_up, high_bits);
+implement_lanes!(
+    16,
+    f32x16,
+    mask32x16,
+    load_bytes_16,
+    look_up_16,
+    high_bits_16
+);
 
 /// Too narrow for registers: arrays, left to the compiler.
 macro_rules! implement_narrow_lanes {
@@ -298,10 +421,23 @@ macro_rules! implement_narrow_lanes {
                     .fold(f32::INFINITY, |a, b| if b < a { b } else { a })
             }
             #[inline(always)]
+            fn greatest(self, a: [f32; $n]) -> f32 {
+                a.into_iter()
+                    .fold(f32::NEG_INFINITY, |a, b| if b > a { b } else { a })
+            }
+            #[inline(always)]
             fn bits(self, mask: [bool; $n]) -> u32 {
                 mask.iter()
                     .rev()
                     .fold(0, |bits, &lane| bits << 1 | u32::from(lane))
+            }
+            #[inline(always)]
+            fn look_up(self, tables: [[f32; $n]; 3], indices: &[u16; $n]) -> [[[f32; $n]; 3]; 3] {
+                look_up(self, tables, indices)
+            }
+            #[inline(always)]
+            fn high_bits(self, words: &[u16; $n]) -> u32 {
+                high_bits(self, words)
             }
         }
     };

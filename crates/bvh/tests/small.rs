@@ -7,8 +7,8 @@
 
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, BvhView, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets,
-    Phased, QuantizedBvh, Ray, Single, Watertight, Width, build,
+    AllHits, Boxes, BuildQuality, Bvh, BvhView, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packet,
+    Packets, Phased, QuantizedBvh, Ray, Single, Watertight, Width, build, build_compact,
 };
 
 /// Squares behind each other, two triangles each.
@@ -38,8 +38,10 @@ fn rays() -> Vec<Ray> {
 }
 
 #[inline(always)]
-fn check<S, const N: usize, const P: usize>(simd: S, bvh: BvhView<'_, N, P>)
-where
+fn check<S, const N: usize, const P: usize>(
+    simd: S,
+    bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
+) where
     S: Width<N> + Width<P> + Width<4>,
 {
     let rays = rays();
@@ -92,18 +94,67 @@ fn every_width() {
 #[test]
 fn quantized_nodes() {
     let bvh = QuantizedBvh::from(tree::<4, 4>());
-    let rays = rays();
-    let mut hits = vec![Hit::miss(0.0); rays.len()];
-    dispatch!(Level::new(), simd => {
-        Single.closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
+    dispatch!(Level::new(), simd => check(simd, bvh.view()));
+}
+
+#[test]
+fn compact_packets() {
+    let (positions, triangles) = squares();
+    let quality = BuildQuality::High;
+    let bvh = build_compact::<4>(&positions, &triangles, None, quality);
+    dispatch!(Level::new(), simd => check(simd, bvh.view()));
+}
+
+/// So many triangles that there are more than a few nodes: neighbours make packets, others are in flight.
+#[test]
+fn streams_through_many_nodes() {
+    let side = 12;
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for y in 0..=side {
+        positions.extend((0..=side).map(|x| [x as f32, y as f32, ((x * y) % 3) as f32]));
+    }
+    for corner in (0..side * side).map(|i| i / side * (side + 1) + i % side) {
+        let (right, above) = (corner + 1, corner + side + 1);
+        triangles.extend([[corner, right, above], [right, above + 1, above]]);
+    }
+    let bvh: Bvh<4> = build(&positions, &triangles, None, BuildQuality::Fast);
+    assert!(bvh.nodes().len() > 16);
+    let compact = build_compact::<4>(&positions, &triangles, None, BuildQuality::Fast);
+    let ray = |i: u32, dir| {
+        let along = |step: u32| (i * step % 97) as f32 / 97.0 * side as f32;
+        Ray::unbounded([along(13), along(29), 5.0], dir)
+    };
+    let neighbours = (0..64).map(|i| ray(i, [0.01, 0.02, -1.0]));
+    let others = (0..64).map(|i| {
+        ray(
+            i,
+            [0.3 - 0.1 * (i % 7) as f32, 0.2, [-1.0, 1.0][i as usize % 2]],
+        )
     });
-    assert_eq!(hits.iter().filter(|hit| hit.is_hit()).count(), 6);
+    for rays in [neighbours.collect::<Vec<Ray>>(), others.collect()] {
+        let mut expected = vec![Hit::miss(0.0); rays.len()];
+        let mut hits = expected.clone();
+        let mut occluded = vec![false; rays.len()];
+        dispatch!(Level::new(), simd => {
+            Single.closest_hits(simd, Watertight, bvh.view(), &rays, &mut expected, &AllHits);
+            Hybrid::<4>.closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
+            assert_eq!(hits, expected);
+            Hybrid::<16>.closest_hits(simd, Watertight, compact.view(), &rays, &mut hits, &AllHits);
+            assert_eq!(hits, expected);
+            Hybrid::<8>.any_hits(simd, Watertight, compact.view(), &rays, &mut occluded, &AllHits);
+        });
+        let hit: Vec<bool> = expected.iter().map(Hit::is_hit).collect();
+        assert_eq!(occluded, hit);
+        assert!(hit.contains(&true));
+    }
 }
 
 /// So many that all triangles are tested, with sixteen rays at once.
 #[test]
 fn streams_of_many_rays() {
     let bvh = tree::<8, 4>();
+    let (positions, triangles) = squares();
+    let compact = build_compact::<8>(&positions, &triangles, None, BuildQuality::Fast);
     let rays: Vec<Ray> = rays().into_iter().cycle().take(260).collect();
     // Neighbours that differ make no packets.
     let turned = |ray: &Ray| Ray {
@@ -115,6 +166,8 @@ fn streams_of_many_rays() {
     let mut hits = expected.clone();
     dispatch!(Level::new(), simd => {
         Single.closest_hits(simd, Watertight, bvh.view(), &rays, &mut expected, &AllHits);
+        Hybrid::<4>.closest_hits(simd, Watertight, compact.view(), &rays, &mut hits, &AllHits);
+        assert_eq!(hits, expected);
         Hybrid::<4>.closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
     });
     assert_eq!(hits, expected);

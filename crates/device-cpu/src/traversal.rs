@@ -5,8 +5,8 @@
 
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Culling, Hit, HitFilter, Hybrid, Kernel, MarkedHits, Precision,
-    Ray, Watertight, build, traversal_cost,
+    AllHits, BuildQuality, Bvh, CompactBvh, Culling, Hit, HitFilter, Hybrid, Kernel, MarkedHits,
+    Precision, Ray, Watertight, build, build_compact, traversal_cost,
 };
 use residual_render::scene_data::SceneData;
 
@@ -66,7 +66,8 @@ impl Marks {
 enum Tree {
     Four(Bvh<4>),
     Eight(Bvh<8>),
-    Sixteen(Bvh<16>),
+    /// Sixteen numbers fit a register, in which a packet's shared vertices are looked up.
+    Sixteen(CompactBvh<16>),
 }
 
 impl AnyBvh {
@@ -80,7 +81,9 @@ impl AnyBvh {
                 Tree::Four(build(&positions, &triangles, sides, quality))
             }
             LaneCount::Eight => Tree::Eight(build(&positions, &triangles, sides, quality)),
-            LaneCount::Sixteen => Tree::Sixteen(build(&positions, &triangles, sides, quality)),
+            LaneCount::Sixteen => {
+                Tree::Sixteen(build_compact(&positions, &triangles, sides, quality))
+            }
         };
         Self {
             tree,

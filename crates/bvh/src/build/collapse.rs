@@ -13,18 +13,17 @@ use rayon::prelude::*;
 
 use crate::bounds::Bounds;
 use crate::build::binary::{BinaryNode, BinaryTree};
+use crate::build::leaf_size::{LeafSize, MAX_LEAF_PACKETS};
 use crate::build::mesh::Mesh;
 use crate::build::reference::Reference;
 use crate::layout::bvh::Bvh;
 use crate::layout::child::Child;
 use crate::layout::node::WideNode;
 use crate::layout::triangle_packet::{SINGLE_SIDED, TrianglePacket};
-use crate::layout::validate::check_structure;
+use crate::layout::validate::check_nodes;
 
 /// Cost of testing a ray against a packet, in units of testing it against a node.
 pub(crate) const PACKET_COST: f32 = 1.0;
-/// Packets in the largest leaf considered.
-const MAX_LEAF_PACKETS: usize = 4;
 /// Binary nodes of the largest subtree planned as one task.
 const TASK: usize = 1 << 13;
 const _: () = assert!(MAX_LEAF_PACKETS <= Child::MAX_PACKETS);
@@ -61,7 +60,7 @@ impl<const N: usize> Plan<N> {
 type Costs<const N: usize> = [f32; N];
 
 /// The wide hierarchy over `references`, which the tree's leaves index.
-pub(crate) fn collapse<const N: usize, const P: usize>(
+pub(crate) fn collapse<const N: usize, const P: usize, L: LeafSize<P>>(
     tree: &BinaryTree,
     references: &[Reference],
     mesh: &Mesh<'_>,
@@ -82,7 +81,7 @@ pub(crate) fn collapse<const N: usize, const P: usize>(
         root_area: bounds_of(references).half_area(),
     };
     let mut plans: Vec<Plan<N>> = vec![Plan::LEAF; tree.nodes.len()];
-    planner.plan::<N, P>(0, &mut plans);
+    planner.plan::<N, P, L>(0, &mut plans);
     // The probability that a ray which enters the root enters the node.
     let area = |node: u32| planner.relative_area(&plans[node as usize].bounds);
 
@@ -121,7 +120,7 @@ pub(crate) fn collapse<const N: usize, const P: usize>(
         .par_iter()
         .map(|packet| packet_of(&leaves.prims[packet.clone()], mesh))
         .collect();
-    check_structure(&bvh.nodes, &bvh.packets).expect("the builder keeps the kernels' contract");
+    check_nodes(&bvh.nodes, bvh.packets.len()).expect("the builder keeps the kernels' contract");
     bvh
 }
 
@@ -135,43 +134,51 @@ struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// Plans the subtree of `node`, whose nodes `plans` are, and returns its costs.
-    fn plan<const N: usize, const P: usize>(&self, node: u32, plans: &mut [Plan<N>]) -> Costs<N> {
+    /// Plans the subtree of `node`, whose nodes `plans` are. Returns its costs, and what is known of it as a leaf.
+    fn plan<const N: usize, const P: usize, L: LeafSize<P>>(
+        &self,
+        node: u32,
+        plans: &mut [Plan<N>],
+    ) -> (Costs<N>, L) {
         let (plan, below) = plans.split_first_mut().expect("at least the node itself");
         let (left, right) = match self.tree.nodes[node as usize] {
             BinaryNode::Leaf(reference) => {
                 let Reference { prim, bounds } = self.references[reference as usize];
-                let [a, b, c] = self.mesh.vertices(prim).map(Vec3::from);
+                let corners = self.mesh.vertices(prim);
+                let [a, b, c] = corners.map(Vec3::from);
                 plan.bounds = bounds;
                 plan.surface = (b - a).cross(c - a).length() / self.parts[prim as usize] as f32;
                 plan.cost = PACKET_COST * self.relative_area(&plan.bounds);
-                return [plan.cost; N];
+                return ([plan.cost; N], L::of_triangle(&corners));
             }
             BinaryNode::Inner(left, right) => (left, right),
         };
         let parallel = below.len() > TASK;
         let (lefts, rights) = below.split_at_mut((right - left) as usize);
-        let (left_costs, right_costs) = if parallel {
+        let ((left_costs, left_size), (right_costs, right_size)) = if parallel {
             rayon::join(
-                || self.plan::<N, P>(left, lefts),
-                || self.plan::<N, P>(right, rights),
+                || self.plan::<N, P, L>(left, lefts),
+                || self.plan::<N, P, L>(right, rights),
             )
         } else {
             (
-                self.plan::<N, P>(left, lefts),
-                self.plan::<N, P>(right, rights),
+                self.plan::<N, P, L>(left, lefts),
+                self.plan::<N, P, L>(right, rights),
             )
         };
         plan.bounds = lefts[0].bounds.union(&rights[0].bounds);
         plan.surface = lefts[0].surface + rights[0].surface;
         let counts = [lefts[0].count, rights[0].count];
-        plan_inner::<N, P>(
+        let size = left_size.join(right_size);
+        let costs = plan_inner::<N>(
             plan,
             counts,
+            size.packets(),
             &left_costs,
             &right_costs,
             self.relative_area(&plan.bounds),
-        )
+        );
+        (costs, size)
     }
 
     fn relative_area(&self, bounds: &Bounds) -> f32 {
@@ -179,9 +186,11 @@ impl Planner<'_> {
     }
 }
 
-fn plan_inner<const N: usize, const P: usize>(
+/// `packets` are those that the subtree takes as a leaf, if it may be one.
+fn plan_inner<const N: usize>(
     plan: &mut Plan<N>,
     counts: [u32; 2],
+    packets: Option<usize>,
     left: &Costs<N>,
     right: &Costs<N>,
     area: f32,
@@ -197,12 +206,7 @@ fn plan_inner<const N: usize, const P: usize>(
                 if next.0 < best.0 { next } else { best }
             })
     };
-    let packets = (count as usize).div_ceil(P);
-    let leaf_cost = if packets <= MAX_LEAF_PACKETS {
-        PACKET_COST * packets as f32 * area
-    } else {
-        f32::INFINITY
-    };
+    let leaf_cost = packets.map_or(f32::INFINITY, |packets| PACKET_COST * packets as f32 * area);
     let (children_cost, left_slots) = distribute(N.min(most[0] + most[1]));
     let node_cost = area + children_cost;
 

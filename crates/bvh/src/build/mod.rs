@@ -6,6 +6,7 @@ mod binning;
 mod clip;
 mod collapse;
 mod fragment;
+mod leaf_size;
 mod mesh;
 mod partition;
 mod ploc;
@@ -19,10 +20,12 @@ mod spatial;
 use rayon::prelude::*;
 
 use self::collapse::collapse;
+use self::leaf_size::{LeafSize, Triangles, Vertices};
 use self::mesh::{Mesh, has_area};
 use self::reinsert::reinsert;
 use self::sbvh::{Splits, build_tree};
 use crate::layout::bvh::Bvh;
+use crate::layout::compact::CompactBvh;
 
 /// How much time the build may spend on the tree's quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,6 +78,31 @@ pub fn build_with_progress<const N: usize, const P: usize>(
     quality: BuildQuality,
     report: &(dyn Fn(f32) + Sync),
 ) -> Bvh<N, P> {
+    build_leaves::<N, P, Triangles>(positions, triangles, single_sided, quality, report)
+}
+
+/// As [`build`], in a third to a half of the memory: see [`CompactBvh`]. Leaves are planned for packets that hold 16 vertices.
+///
+/// # Panics
+/// As [`build`].
+pub fn build_compact<const N: usize>(
+    positions: &[[f32; 3]],
+    triangles: &[[u32; 3]],
+    single_sided: Option<&[bool]>,
+    quality: BuildQuality,
+) -> CompactBvh<N> {
+    let report = |_| ();
+    let bvh = build_leaves::<N, 16, Vertices>(positions, triangles, single_sided, quality, &report);
+    CompactBvh::try_from(bvh).expect("leaves have at most 64 triangles")
+}
+
+fn build_leaves<const N: usize, const P: usize, L: LeafSize<P>>(
+    positions: &[[f32; 3]],
+    triangles: &[[u32; 3]],
+    single_sided: Option<&[bool]>,
+    quality: BuildQuality,
+    report: &(dyn Fn(f32) + Sync),
+) -> Bvh<N, P> {
     assert!(triangles.len() < 1 << 31, "too many triangles");
     assert!(
         single_sided.is_none_or(|marks| marks.len() == triangles.len()),
@@ -104,7 +132,7 @@ pub fn build_with_progress<const N: usize, const P: usize>(
         BuildQuality::Best => ploc::build_tree(&mesh, &prims),
     };
     report(0.8);
-    let bvh = collapse(&tree, &references, &mesh);
+    let bvh = collapse::<N, P, L>(&tree, &references, &mesh);
     report(1.0);
     bvh
 }

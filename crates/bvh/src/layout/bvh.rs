@@ -3,8 +3,9 @@
 use crate::bounds::Bounds;
 use crate::layout::boxes::Boxes;
 use crate::layout::node::WideNode;
+use crate::layout::packet::Packet;
 use crate::layout::triangle_packet::TrianglePacket;
-use crate::layout::validate::{InvalidBvh, check_structure};
+use crate::layout::validate::{InvalidBvh, check_nodes};
 
 /// A bounding volume hierarchy over triangles: `N` children a node (2, 4, 8 or 16), `P` triangles a
 /// packet (1, 4, 8 or 16).
@@ -37,10 +38,7 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
 
     /// The box around everything; empty if there are no triangles.
     pub fn bounds(&self) -> Bounds {
-        let root = &self.nodes[0];
-        (0..N).fold(Bounds::EMPTY, |bounds, slot| {
-            bounds.union(&root.child_bounds(slot))
-        })
+        self.nodes[0].bounds()
     }
 
     /// Expected cost of a random ray that enters the root, by the surface area heuristic, in units
@@ -57,20 +55,17 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
 
 /// A hierarchy whose structure is known to be sound, wherever its bytes came from.
 #[derive(Clone, Copy, Debug)]
-pub struct BvhView<'a, const N: usize, const P: usize = N, B = WideNode<N>> {
+pub struct BvhView<'a, const N: usize, const P: usize = N, B = WideNode<N>, T = TrianglePacket<P>> {
     nodes: &'a [B],
-    packets: &'a [TrianglePacket<P>],
+    packets: &'a [T],
 }
 
-impl<'a, const N: usize, const P: usize, B: Boxes<N>> BvhView<'a, N, P, B> {
+impl<'a, const N: usize, const P: usize, B: Boxes<N>, T: Packet<P>> BvhView<'a, N, P, B, T> {
     /// Checks everything that the kernels' memory safety and termination rest on: a root, children
     /// and packets in range, a tree with parents before children, a depth within the stack's bound;
     /// and also that every node's boxes lie inside the box that its parent holds for it.
-    pub fn new(
-        nodes: &'a [B],
-        packets: &'a [TrianglePacket<P>],
-    ) -> Result<BvhView<'a, N, P, B>, InvalidBvh> {
-        check_structure(nodes, packets)?;
+    pub fn new(nodes: &'a [B], packets: &'a [T]) -> Result<BvhView<'a, N, P, B, T>, InvalidBvh> {
+        check_nodes(nodes, packets.len())?;
         Ok(BvhView { nodes, packets })
     }
 
@@ -80,10 +75,7 @@ impl<'a, const N: usize, const P: usize, B: Boxes<N>> BvhView<'a, N, P, B> {
     /// [`BvhView::new`] must succeed on these slices, as it does on the nodes and packets of a
     /// [`Bvh`] or a [`crate::QuantizedBvh`].
     #[inline(always)]
-    pub unsafe fn new_unchecked(
-        nodes: &'a [B],
-        packets: &'a [TrianglePacket<P>],
-    ) -> BvhView<'a, N, P, B> {
+    pub unsafe fn new_unchecked(nodes: &'a [B], packets: &'a [T]) -> BvhView<'a, N, P, B, T> {
         BvhView { nodes, packets }
     }
 
@@ -95,7 +87,14 @@ impl<'a, const N: usize, const P: usize, B: Boxes<N>> BvhView<'a, N, P, B> {
 
     /// The triangles, leaf by leaf.
     #[inline(always)]
-    pub fn packets(&self) -> &'a [TrianglePacket<P>] {
+    pub fn packets(&self) -> &'a [T] {
         self.packets
+    }
+
+    /// Whether all coordinates are so far from overflow that products of two are finite.
+    #[inline(always)]
+    pub(crate) fn is_moderate(&self) -> bool {
+        let root = &self.nodes[0];
+        (0..N).all(|slot| root.child_bounds(slot).is_moderate())
     }
 }

@@ -1,8 +1,9 @@
 //! A packet of rays in columns, as vector lanes want them.
 
+use crate::bounds::Bounds;
 use crate::layout::class::{Class, ordered};
 use crate::ray::{Ray, interval};
-use crate::simd::Width;
+use crate::simd::{Width, transposed};
 
 /// `R` rays.
 #[derive(Clone, Copy)]
@@ -35,6 +36,35 @@ impl<const R: usize> Columns<R> {
             }
             columns.tmin[lane] = ray.tmin;
             columns.tmax[lane] = ray.tmax;
+        }
+        columns
+    }
+
+    /// Rays in their order.
+    #[inline(always)]
+    pub(crate) fn of<S: Width<R>>(simd: S, rays: &[Ray; R]) -> Columns<R> {
+        let mut columns = Columns {
+            org: [[0.0; R]; 3],
+            dir: [[0.0; R]; 3],
+            tmin: [0.0; R],
+            tmax: [0.0; R],
+        };
+        let (groups, _) = rays.as_chunks::<4>();
+        for (group, [a, b, c, d]) in groups.iter().enumerate() {
+            let row = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last];
+            let org = |ray: &Ray| row(ray.org, ray.tmin);
+            let dir = |ray: &Ray| row(ray.dir, ray.tmax);
+            let lanes = 4 * group..4 * group + 4;
+            let [x, y, z, tmin] = transposed(simd, [org(a), org(b), org(c), org(d)]);
+            columns.org[0][lanes.clone()].copy_from_slice(&x);
+            columns.org[1][lanes.clone()].copy_from_slice(&y);
+            columns.org[2][lanes.clone()].copy_from_slice(&z);
+            columns.tmin[lanes.clone()].copy_from_slice(&tmin);
+            let [x, y, z, tmax] = transposed(simd, [dir(a), dir(b), dir(c), dir(d)]);
+            columns.dir[0][lanes.clone()].copy_from_slice(&x);
+            columns.dir[1][lanes.clone()].copy_from_slice(&y);
+            columns.dir[2][lanes.clone()].copy_from_slice(&z);
+            columns.tmax[lanes].copy_from_slice(&tmax);
         }
         columns
     }
@@ -74,6 +104,15 @@ impl<const R: usize> Columns<R> {
         })
     }
 
+    /// As [`Bounds::is_moderate`], of the origins.
+    #[inline(always)]
+    pub(crate) fn is_moderate<S: Width<R>>(&self, simd: S) -> bool {
+        let largest = simd.splat(Bounds::MODERATE);
+        let is_moderate = |row: &[f32; R]| simd.bits(simd.lt(simd.abs(simd.load(row)), largest));
+        let [x, y, z] = &self.org;
+        is_moderate(x) & is_moderate(y) & is_moderate(z) == u32::MAX >> (32 - R)
+    }
+
     /// Clips the intervals to what the kernels search, see [`Ray::interval`], and empties those
     /// behind the first `count`.
     #[inline(always)]
@@ -84,34 +123,4 @@ impl<const R: usize> Columns<R> {
             self.tmax[lane] = if lane < count { tmax } else { -1.0 };
         }
     }
-}
-
-/// The least of `R` numbers, `R` a power of two.
-#[inline(always)]
-pub(crate) fn least<const R: usize>(mut values: [f32; R]) -> f32 {
-    let mut half = R / 2;
-    while half > 0 {
-        for i in 0..half {
-            if values[i + half] < values[i] {
-                values[i] = values[i + half];
-            }
-        }
-        half /= 2;
-    }
-    values[0]
-}
-
-/// The greatest of `R` numbers, `R` a power of two.
-#[inline(always)]
-pub(crate) fn greatest<const R: usize>(mut values: [f32; R]) -> f32 {
-    let mut half = R / 2;
-    while half > 0 {
-        for i in 0..half {
-            if values[i + half] > values[i] {
-                values[i] = values[i + half];
-            }
-        }
-        half /= 2;
-    }
-    values[0]
 }

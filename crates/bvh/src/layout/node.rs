@@ -55,6 +55,13 @@ impl<const N: usize> WideNode<N> {
         }
     }
 
+    /// The box around all of them.
+    pub(crate) fn bounds(&self) -> Bounds {
+        (0..N).fold(Bounds::EMPTY, |bounds, slot| {
+            bounds.union(&self.child_bounds(slot))
+        })
+    }
+
     pub(crate) fn set_child(&mut self, slot: usize, bounds: &Bounds, child: Child) {
         for axis in 0..3 {
             self.bounds[2 * axis][slot] = bounds.lo[axis];

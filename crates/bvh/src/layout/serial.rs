@@ -22,7 +22,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use crate::layout::bvh::Bvh;
 use crate::layout::node::WideNode;
 use crate::layout::triangle_packet::TrianglePacket;
-use crate::layout::validate::{InvalidBvh, check_structure};
+use crate::layout::validate::{InvalidBvh, check_nodes};
 
 const MAGIC: [u8; 8] = *b"ResidBVH";
 const VERSION: u32 = 1;
@@ -129,7 +129,7 @@ impl<const N: usize, const P: usize> Bvh<N, P> {
         let sah_cost = f32::from_le_bytes(read(reader)?);
         let nodes: Vec<WideNode<N>> = read_records(reader, node_count)?;
         let packets: Vec<TrianglePacket<P>> = read_records(reader, packet_count)?;
-        check_structure(&nodes, &packets).map_err(LoadError::Structure)?;
+        check_nodes(&nodes, packets.len()).map_err(LoadError::Structure)?;
         Ok(Bvh {
             nodes,
             packets,

@@ -2,6 +2,10 @@
 
 use std::mem::{align_of, offset_of, size_of};
 
+use crate::layout::packet::Packet;
+use crate::layout::packet::sealed::Sealed;
+use crate::simd::Width;
+
 /// Marks a triangle index as single-sided.
 pub(crate) const SINGLE_SIDED: u32 = 1 << 31;
 
@@ -45,5 +49,34 @@ impl<const P: usize> TrianglePacket<P> {
                 row[lane] = coordinate;
             }
         }
+    }
+}
+
+impl<const P: usize> Sealed for TrianglePacket<P> {}
+
+impl<const P: usize> Packet<P> for TrianglePacket<P> {
+    #[inline(always)]
+    fn prim_ids(&self) -> &[u32; P] {
+        &self.prim_ids
+    }
+
+    #[inline(always)]
+    fn coordinate(&self, lane: usize, corner: usize, axis: usize) -> f32 {
+        self.vertices[corner % 3][axis % 3][lane % P]
+    }
+
+    #[inline(always)]
+    fn used<S: Width<P>>(&self, _: S) -> u32 {
+        u32::MAX
+    }
+
+    #[inline(always)]
+    fn in_lanes<S: Width<P>>(
+        &self,
+        _: S,
+        moved: impl Fn(&[[f32; P]; 3]) -> [S::Float; 3],
+    ) -> [[S::Float; 3]; 3] {
+        let [a, b, c] = &self.vertices;
+        [moved(a), moved(b), moved(c)]
     }
 }

@@ -4,7 +4,6 @@ use std::fmt;
 
 use crate::layout::boxes::Boxes;
 use crate::layout::child::Child;
-use crate::layout::triangle_packet::TrianglePacket;
 
 /// Levels of inner nodes on the longest path, the root's included. The builder keeps to it and
 /// [`check_nodes`] checks it, so that the traversal's stack cannot overflow.
@@ -70,13 +69,6 @@ impl fmt::Display for InvalidBvh {
 }
 
 impl std::error::Error for InvalidBvh {}
-
-pub(crate) fn check_structure<const N: usize, const P: usize>(
-    nodes: &[impl Boxes<N>],
-    packets: &[TrianglePacket<P>],
-) -> Result<(), InvalidBvh> {
-    check_nodes(nodes, packets.len())
-}
 
 /// For leaves that name some of `packet_count` packets, or of other things. One pass suffices
 /// because parents precede their children.

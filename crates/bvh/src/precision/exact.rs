@@ -9,8 +9,10 @@
 
 use crate::bounds::Bounds;
 use crate::filter::Culling;
+use crate::layout::packet::Packet;
 use crate::precision::ending::Ending;
 use crate::precision::expansion::{self, Pair};
+use crate::precision::shear_bounds::ShearBounds;
 use crate::precision::shearing::Rounded;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
@@ -45,6 +47,18 @@ impl Test for Exact {
         candidates(simd, rays, &triangles, culling)
     }
 
+    /// All: signs of rounded numbers say nothing here.
+    #[inline(always)]
+    fn candidates_of_rays<S: Width<W>, const W: usize>(
+        self,
+        _: S,
+        _: &ShearBounds<S, W>,
+        _: &impl Packet<W>,
+        _: Culling,
+    ) -> u32 {
+        u32::MAX
+    }
+
     #[inline(always)]
     fn test<S: Width<W>, const W: usize, E: Ending>(
         self,
@@ -59,10 +73,8 @@ impl Test for Exact {
         if lanes == 0 {
             return None;
         }
-        // Lanes that are left over, or done, have an empty interval; unused ones have NaN corners.
-        let corner = triangles.corner(simd, 0, 0);
-        let in_use = simd.and(simd.le(rays.tmin, tmax), simd.le(corner, corner));
-        lanes &= simd.bits(in_use);
+        // Lanes that are left over, or done, have an empty interval.
+        lanes &= simd.bits(simd.le(rays.tmin, tmax));
 
         let ([mut t, mut u, mut v], mut back) = ([[f32::NAN; W]; 3], 0);
         for lane in 0..W {
@@ -118,8 +130,10 @@ fn candidates<S: Width<W>, const W: usize>(
 ) -> u32 {
     const U: f32 = f32::EPSILON / 2.0;
     let (zero, least) = (simd.splat(0.0), simd.splat(f32::MIN_POSITIVE));
-    let corners = [0, 1, 2].map(|vertex| {
-        let [x, y, z] = triangles.sheared::<Rounded>(simd, rays, vertex);
+    let sheared = triangles.sheared::<Rounded>(simd, rays);
+    // Where nothing is used; what overflows is infinite.
+    let is_number = simd.bits(simd.le(sheared[0][2], sheared[0][2]));
+    let corners = sheared.map(|[x, y, z]| {
         let (across, along) = (simd.add(simd.abs(x), simd.abs(y)), simd.abs(z));
         let g = simd.add(across, simd.mul(along, simd.splat(4.0 * U)));
         let t = simd.add(simd.add(across, along), least);
@@ -142,7 +156,7 @@ fn candidates<S: Width<W>, const W: usize>(
         Culling::Back => negative,
         Culling::None | Culling::PerTriangle => positive & negative,
     };
-    !outside & (u32::MAX >> (32 - W))
+    !outside & is_number & triangles.used(simd)
 }
 
 /// Where a ray meets one triangle.

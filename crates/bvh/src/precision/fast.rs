@@ -1,7 +1,10 @@
 //! The shear test with fused operations throughout.
 
 use crate::filter::Culling;
+use crate::layout::packet::Packet;
 use crate::precision::ending::Ending;
+use crate::precision::interval::{highest, lowest, product};
+use crate::precision::shear_bounds::{ShearBounds, possible_sides};
 use crate::precision::shearing::Fused;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
@@ -28,8 +31,28 @@ impl Test for Fast {
         triangles: impl Triangles<S, W>,
         culling: Culling,
     ) -> u32 {
-        let corners = corners(simd, rays, &triangles);
-        sides(simd, weights(simd, &corners), culling).lanes
+        let corners = triangles.sheared::<Fused>(simd, rays);
+        sides(simd, weights(simd, &corners), culling).lanes & triangles.used(simd)
+    }
+
+    #[inline(always)]
+    fn candidates_of_rays<S: Width<W>, const W: usize>(
+        self,
+        simd: S,
+        rays: &ShearBounds<S, W>,
+        packet: &impl Packet<W>,
+        culling: Culling,
+    ) -> u32 {
+        let [a, b, c] = rays.sheared::<Fused>(simd, packet);
+        let weights = [(c, b), (a, c), (b, a)].map(|(p, q)| {
+            let minus = product(simd, p[1], q[0]);
+            let ends = |minus: S::Float| {
+                let ([p0, p1], [q0, q1]) = (p[0], q[1]);
+                [(p0, q0), (p0, q1), (p1, q0), (p1, q1)].map(|(p, q)| simd.mul_sub(p, q, minus))
+            };
+            [lowest(simd, ends(minus[1])), highest(simd, ends(minus[0]))]
+        });
+        possible_sides(simd, weights, culling)
     }
 
     #[inline(always)]
@@ -42,9 +65,9 @@ impl Test for Fast {
         culling: Culling,
         ending: E,
     ) -> Option<LaneHits<S, W>> {
-        let corners @ [a, b, c] = corners(simd, rays, &triangles);
+        let corners @ [a, b, c] = triangles.sheared::<Fused>(simd, rays);
         let [w, u, v] = weights(simd, &corners);
-        let inside = sides(simd, [w, u, v], culling);
+        let inside = sides(simd, [w, u, v], culling).among(triangles.used(simd));
         if E::EARLY && inside.lanes == 0 {
             return None;
         }
@@ -59,17 +82,6 @@ impl Test for Fast {
         };
         hits.within(simd, rays.tmin, tmax, ending)
     }
-}
-
-/// The corners, sheared.
-#[inline(always)]
-fn corners<S: Width<W>, const W: usize>(
-    simd: S,
-    rays: &Shear<'_, S, W>,
-    triangles: &impl Triangles<S, W>,
-) -> [[S::Float; 3]; 3] {
-    let corner = |vertex| triangles.sheared::<Fused>(simd, rays, vertex);
-    [corner(0), corner(1), corner(2)]
 }
 
 /// Twice the signed areas opposite to each corner.

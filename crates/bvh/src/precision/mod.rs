@@ -4,6 +4,8 @@ pub(crate) mod ending;
 pub(crate) mod exact;
 mod expansion;
 pub(crate) mod fast;
+pub(crate) mod interval;
+pub(crate) mod shear_bounds;
 pub(crate) mod shearing;
 pub(crate) mod triangle;
 pub(crate) mod triangle_test;

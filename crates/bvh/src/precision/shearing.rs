@@ -1,5 +1,6 @@
 //! How corners are moved to the space in which a ray is the z axis.
 
+use crate::precision::interval::{Interval, highest, lowest, product};
 use crate::simd::Width;
 
 /// [`Rounded`] or [`Fused`].
@@ -12,6 +13,14 @@ pub trait Shearing {
         slope: S::Float,
         z: S::Float,
     ) -> S::Float;
+
+    /// Between which numbers that lies, from the ends of intervals.
+    fn bounds<S: Width<W>, const W: usize>(
+        simd: S,
+        x: Interval<S::Float>,
+        slope: Interval<S::Float>,
+        z: Interval<S::Float>,
+    ) -> Interval<S::Float>;
 }
 
 /// Every operation rounds.
@@ -32,6 +41,17 @@ impl Shearing for Rounded {
     ) -> S::Float {
         simd.sub(x, simd.mul(slope, z))
     }
+
+    #[inline(always)]
+    fn bounds<S: Width<W>, const W: usize>(
+        simd: S,
+        x: Interval<S::Float>,
+        slope: Interval<S::Float>,
+        z: Interval<S::Float>,
+    ) -> Interval<S::Float> {
+        let shear = product(simd, slope, z);
+        [simd.sub(x[0], shear[1]), simd.sub(x[1], shear[0])]
+    }
 }
 
 impl Shearing for Fused {
@@ -43,5 +63,23 @@ impl Shearing for Fused {
         z: S::Float,
     ) -> S::Float {
         simd.mul_sub(slope, z, x)
+    }
+
+    #[inline(always)]
+    fn bounds<S: Width<W>, const W: usize>(
+        simd: S,
+        x: Interval<S::Float>,
+        slope: Interval<S::Float>,
+        z: Interval<S::Float>,
+    ) -> Interval<S::Float> {
+        let ends = |x: S::Float| {
+            [
+                simd.mul_sub(slope[0], z[0], x),
+                simd.mul_sub(slope[0], z[1], x),
+                simd.mul_sub(slope[1], z[0], x),
+                simd.mul_sub(slope[1], z[1], x),
+            ]
+        };
+        [lowest(simd, ends(x[1])), highest(simd, ends(x[0]))]
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::layout::class::{Axes, axes};
 use crate::layout::columns::Columns;
-use crate::layout::triangle_packet::TrianglePacket;
+use crate::layout::packet::Packet;
 use crate::precision::ending::Ending;
 use crate::precision::shearing::Shearing;
 use crate::ray::Ray;
@@ -13,51 +13,62 @@ use crate::simd::{Stored, Width};
 
 /// A triangle a lane.
 pub trait Triangles<S: Width<W>, const W: usize> {
-    /// One coordinate of one corner.
-    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float;
+    /// The lanes that hold a triangle, as bits; more may be set where NaN coordinates alone keep rays out.
+    fn used(&self, simd: S) -> u32;
     /// The corners in one lane.
     fn corners(&self, lane: usize) -> [[f32; 3]; 3];
-    /// A corner in the space where the ray is the z axis; z is not scaled.
-    #[inline(always)]
-    fn sheared<K: Shearing>(
-        &self,
-        simd: S,
-        rays: &Shear<'_, S, W>,
-        vertex: usize,
-    ) -> [S::Float; 3] {
-        rays.sheared::<K>(simd, |axis| self.corner(simd, vertex, axis))
-    }
+    /// The corners in the space where the ray is the z axis; z is not scaled.
+    fn sheared<K: Shearing>(&self, simd: S, rays: &Shear<'_, S, W>) -> [[S::Float; 3]; 3];
 }
 
-impl<S: Width<W>, const W: usize> Triangles<S, W> for &TrianglePacket<W> {
+impl<S: Width<W>, const W: usize, T: Packet<W>> Triangles<S, W> for &T {
     #[inline(always)]
-    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
-        simd.load(&self.vertices[vertex % 3][axis % 3])
+    fn used(&self, simd: S) -> u32 {
+        Packet::used(*self, simd)
     }
 
     #[inline(always)]
     fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
-        self.vertices.map(|vertex| vertex.map(|row| row[lane % W]))
+        Packet::corners(*self, lane)
+    }
+
+    #[inline(always)]
+    fn sheared<K: Shearing>(&self, simd: S, rays: &Shear<'_, S, W>) -> [[S::Float; 3]; 3] {
+        self.in_lanes(
+            simd,
+            #[inline(always)]
+            |points| rays.sheared::<K>(simd, |axis| simd.load(&points[axis % 3])),
+        )
     }
 }
 
 /// The same triangle in every lane.
-pub(crate) struct OneTriangle<'a, const P: usize> {
-    pub(crate) packet: &'a TrianglePacket<P>,
+pub(crate) struct OneTriangle<'a, T, const P: usize> {
+    pub(crate) packet: &'a T,
     pub(crate) lane: usize,
 }
 
-impl<S: Width<W>, const W: usize, const P: usize> Triangles<S, W> for OneTriangle<'_, P> {
+impl<S: Width<W>, const W: usize, const P: usize, T: Packet<P>> Triangles<S, W>
+    for OneTriangle<'_, T, P>
+{
     #[inline(always)]
-    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
-        simd.splat(self.packet.vertices[vertex % 3][axis % 3][self.lane % P])
+    fn used(&self, _: S) -> u32 {
+        u32::MAX
     }
 
     #[inline(always)]
     fn corners(&self, _: usize) -> [[f32; 3]; 3] {
-        self.packet
-            .vertices
-            .map(|vertex| vertex.map(|row| row[self.lane % P]))
+        self.packet.corners(self.lane)
+    }
+
+    #[inline(always)]
+    fn sheared<K: Shearing>(&self, simd: S, rays: &Shear<'_, S, W>) -> [[S::Float; 3]; 3] {
+        let corner = |corner: usize| {
+            rays.sheared::<K>(simd, |axis| {
+                simd.splat(self.packet.coordinate(self.lane, corner, axis))
+            })
+        };
+        [corner(0), corner(1), corner(2)]
     }
 }
 
@@ -77,6 +88,16 @@ enum Axis {
     X,
     Y,
     Z,
+}
+
+impl Axis {
+    #[inline(always)]
+    fn index(self) -> usize {
+        let index = self as usize;
+        // SAFETY: there are three. The compiler forgets it when it loads three at once, and would divide.
+        unsafe { std::hint::assert_unchecked(index < 3) };
+        index
+    }
 }
 
 impl RayShear {
@@ -123,7 +144,7 @@ impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
     pub(crate) fn of_prepared(simd: S, shear: &RayShear, ray: &'a Ray, tmin: f32) -> Self {
         let [x, y, z] = shear.org;
         Shear {
-            axes: shear.axes.map(|axis| axis as usize),
+            axes: shear.axes.map(Axis::index),
             org: [simd.splat(x), simd.splat(y), simd.splat(z)],
             slope: [simd.splat(shear.slope[0]), simd.splat(shear.slope[1])],
             inv_z: simd.splat(shear.inv_z),
@@ -157,6 +178,18 @@ impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
             rays,
             members,
         }
+    }
+
+    /// The order of the axes.
+    #[inline(always)]
+    pub(crate) fn axes(&self) -> Axes {
+        self.axes
+    }
+
+    /// `dir.x / dir.z` and `dir.y / dir.z`.
+    #[inline(always)]
+    pub(crate) fn slope(&self) -> [S::Float; 2] {
+        self.slope
     }
 
     /// The ray in a lane.

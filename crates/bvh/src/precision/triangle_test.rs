@@ -9,7 +9,9 @@ pub trait Precision: sealed::Test {}
 
 pub(crate) mod sealed {
     use crate::filter::Culling;
+    use crate::layout::packet::Packet;
     use crate::precision::ending::Ending;
+    use crate::precision::shear_bounds::ShearBounds;
     use crate::precision::shearing::Shearing;
     use crate::precision::triangle::{LaneHits, Shear, Triangles};
     use crate::simd::Width;
@@ -27,6 +29,17 @@ pub(crate) mod sealed {
             simd: S,
             rays: &Shear<'_, S, W>,
             triangles: impl Triangles<S, W>,
+            culling: Culling,
+        ) -> u32;
+
+        /// The lanes whose triangle may meet any of some rays, as bits: for packets whose coordinates are far from
+        /// overflow.
+        #[doc(hidden)]
+        fn candidates_of_rays<S: Width<W>, const W: usize>(
+            self,
+            simd: S,
+            rays: &ShearBounds<S, W>,
+            packet: &impl Packet<W>,
             culling: Culling,
         ) -> u32;
 
@@ -50,8 +63,19 @@ pub(crate) mod sealed {
 pub(crate) struct Inside {
     /// On the sides of interest.
     pub(crate) lanes: u32,
-    /// From behind.
+    /// From behind; meaningful in those lanes.
     pub(crate) back: u32,
+}
+
+impl Inside {
+    /// Only in these lanes.
+    #[inline(always)]
+    pub(crate) fn among(self, lanes: u32) -> Inside {
+        Inside {
+            lanes: self.lanes & lanes,
+            back: self.back,
+        }
+    }
 }
 
 /// Inside a triangle the three weights have the same sign, or are zero; in front it is positive.

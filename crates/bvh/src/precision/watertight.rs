@@ -10,7 +10,10 @@ use glam::DVec3;
 
 use crate::bounds::Bounds;
 use crate::filter::Culling;
+use crate::layout::packet::Packet;
 use crate::precision::ending::Ending;
+use crate::precision::interval::product;
+use crate::precision::shear_bounds::{ShearBounds, possible_sides};
 use crate::precision::shearing::Rounded;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
 use crate::precision::triangle_test::Precision;
@@ -44,9 +47,25 @@ impl Test for Watertight {
         triangles: impl Triangles<S, W>,
         culling: Culling,
     ) -> u32 {
-        let corners = corners(simd, rays, &triangles);
+        let corners = triangles.sheared::<Rounded>(simd, rays);
         let weights = products(simd, &corners).map(|(p, q)| simd.sub(p, q));
-        sides(simd, weights, culling).lanes
+        sides(simd, weights, culling).lanes & triangles.used(simd)
+    }
+
+    #[inline(always)]
+    fn candidates_of_rays<S: Width<W>, const W: usize>(
+        self,
+        simd: S,
+        rays: &ShearBounds<S, W>,
+        packet: &impl Packet<W>,
+        culling: Culling,
+    ) -> u32 {
+        let [a, b, c] = rays.sheared::<Rounded>(simd, packet);
+        let weights = [(c, b), (a, c), (b, a)].map(|(p, q)| {
+            let (plus, minus) = (product(simd, p[0], q[1]), product(simd, p[1], q[0]));
+            [simd.sub(plus[0], minus[1]), simd.sub(plus[1], minus[0])]
+        });
+        possible_sides(simd, weights, culling)
     }
 
     #[inline(always)]
@@ -59,10 +78,10 @@ impl Test for Watertight {
         culling: Culling,
         ending: E,
     ) -> Option<LaneHits<S, W>> {
-        let corners @ [a, b, c] = corners(simd, rays, &triangles);
+        let corners @ [a, b, c] = triangles.sheared::<Rounded>(simd, rays);
         let edges = products(simd, &corners);
         let [w, u, v] = edges.map(|(p, q)| simd.sub(p, q));
-        let mut inside = sides(simd, [w, u, v], culling);
+        let mut inside = sides(simd, [w, u, v], culling).among(triangles.used(simd));
         if E::EARLY && inside.lanes == 0 {
             return None;
         }
@@ -99,17 +118,6 @@ impl Test for Watertight {
         }
         hits.within(simd, rays.tmin, tmax, ending)
     }
-}
-
-/// The corners, sheared.
-#[inline(always)]
-fn corners<S: Width<W>, const W: usize>(
-    simd: S,
-    rays: &Shear<'_, S, W>,
-    triangles: &impl Triangles<S, W>,
-) -> [[S::Float; 3]; 3] {
-    let corner = |vertex| triangles.sheared::<Rounded>(simd, rays, vertex);
-    [corner(0), corner(1), corner(2)]
 }
 
 /// The products whose differences are twice the signed areas opposite to each vertex. With gradual underflow a

@@ -33,6 +33,12 @@ impl<const R: usize> BestHits<R> {
         }
     }
 
+    /// Where the last of the intervals ends.
+    #[inline(always)]
+    pub(crate) fn farthest<S: Width<R>>(&self, simd: S) -> f32 {
+        simd.greatest(simd.load(&self.t))
+    }
+
     #[inline(always)]
     pub(crate) fn hit(&self, lane: usize) -> Hit {
         Hit {

@@ -6,6 +6,7 @@ use crate::filter::HitFilter;
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
+use crate::layout::packet::Packet;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
@@ -31,7 +32,7 @@ pub struct TraversalCost {
 pub fn traversal_cost<S, const N: usize, const P: usize>(
     simd: S,
     precision: impl Precision,
-    bvh: BvhView<'_, N, P, impl Boxes<N>>,
+    bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
     ray: &Ray,
     filter: &impl HitFilter,
 ) -> TraversalCost

@@ -9,7 +9,7 @@
 
 use crate::filter::HitFilter;
 use crate::layout::class::{AXES, Axes, axes_index};
-use crate::layout::columns::{Columns, greatest};
+use crate::layout::columns::Columns;
 use crate::precision::shearing::Shearing;
 use crate::precision::triangle::{Shear, Triangles};
 use crate::precision::triangle_test::Precision;
@@ -113,7 +113,7 @@ impl<S, Pr: Precision, F: HitFilter, G: Goal> ExhaustiveKernel<'_, S, Pr, F, G> 
                 self.filter,
                 self.goal,
             );
-            if G::ANY && found && greatest(best.t) < 0.0 {
+            if G::ANY && found && best.farthest(simd) < 0.0 {
                 break;
             }
         }
@@ -154,8 +154,8 @@ impl<'a, S: Width<LANES>> Sheared<'a, S> {
 
 impl<S: Width<LANES>> Triangles<S, LANES> for Sheared<'_, S> {
     #[inline(always)]
-    fn corner(&self, simd: S, vertex: usize, axis: usize) -> S::Float {
-        simd.splat(self.corners(0)[vertex % 3][axis % 3])
+    fn used(&self, _: S) -> u32 {
+        u32::MAX
     }
 
     #[inline(always)]
@@ -164,7 +164,7 @@ impl<S: Width<LANES>> Triangles<S, LANES> for Sheared<'_, S> {
     }
 
     #[inline(always)]
-    fn sheared<K: Shearing>(&self, _: S, _: &Shear<'_, S, LANES>, vertex: usize) -> [S::Float; 3] {
-        self.sheared[self.corners[vertex % 3]]
+    fn sheared<K: Shearing>(&self, _: S, _: &Shear<'_, S, LANES>) -> [[S::Float; 3]; 3] {
+        self.corners.map(|vertex| self.sheared[vertex])
     }
 }

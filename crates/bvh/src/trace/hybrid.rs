@@ -5,6 +5,7 @@ use std::cell::LazyCell;
 use crate::filter::HitFilter;
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
+use crate::layout::packet::Packet;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::{Width, apart};
@@ -22,19 +23,20 @@ const FEW_NODES: usize = 16;
 const ENOUGH_RAYS: usize = 512;
 
 /// What stays the same for all rays of a stream.
-pub(crate) struct HybridKernel<'a, S, const N: usize, const P: usize, Pr, F, B, G> {
+pub(crate) struct HybridKernel<'a, S, const N: usize, const P: usize, Pr, F, B, T, G> {
     pub(crate) simd: S,
     pub(crate) precision: Pr,
-    pub(crate) bvh: BvhView<'a, N, P, B>,
+    pub(crate) bvh: BvhView<'a, N, P, B, T>,
     pub(crate) filter: &'a F,
     pub(crate) goal: G,
 }
 
-impl<S, const N: usize, const P: usize, Pr, F, B, G> HybridKernel<'_, S, N, P, Pr, F, B, G>
+impl<S, const N: usize, const P: usize, Pr, F, B, T, G> HybridKernel<'_, S, N, P, Pr, F, B, T, G>
 where
     Pr: Precision,
     F: HitFilter,
     B: Boxes<N>,
+    T: Packet<P>,
     G: Goal,
 {
     /// Finds the hit of each ray; `answer` gets its index and the hit, in whatever order.
@@ -56,6 +58,7 @@ where
             bvh,
             filter,
             goal,
+            is_moderate: bvh.is_moderate(),
             few: R as u32 / 4,
         };
         let phased = PhasedKernel {

@@ -4,7 +4,8 @@ use std::hint::select_unpredictable;
 use std::ops::ControlFlow;
 
 use crate::filter::{Culling, HitFilter, improve};
-use crate::layout::triangle_packet::{SINGLE_SIDED, TrianglePacket};
+use crate::layout::packet::Packet;
+use crate::layout::triangle_packet::SINGLE_SIDED;
 use crate::precision::ending::{Early, Even};
 use crate::precision::triangle::{LaneHits, Shear};
 use crate::precision::triangle_test::Precision;
@@ -18,7 +19,7 @@ pub(crate) fn improve_by_packet<S: Width<P>, const P: usize, F: HitFilter>(
     simd: S,
     precision: impl Precision,
     shear: &Shear<'_, S, P>,
-    packet: &TrianglePacket<P>,
+    packet: &impl Packet<P>,
     ray: &Ray,
     filter: &F,
     goal: impl Goal,
@@ -39,7 +40,7 @@ pub(crate) fn improve_evenly<S: Width<P>, const P: usize, F: HitFilter, G: Goal>
     simd: S,
     precision: impl Precision,
     shear: &Shear<'_, S, P>,
-    packet: &TrianglePacket<P>,
+    packet: &impl Packet<P>,
     ray: &Ray,
     filter: &F,
     goal: G,
@@ -65,8 +66,10 @@ pub(crate) fn improve_evenly<S: Width<P>, const P: usize, F: HitFilter, G: Goal>
         let at = hits.lanes & simd.bits(simd.le(distances, simd.splat(nearest)));
         // Without a hit, some lane.
         let lane = at.trailing_zeros() as usize % P;
-        let prim = packet.prim_ids[lane];
-        let tie = (at & at.wrapping_sub(1) != 0) | (nearest == best.t);
+        let prim = packet.prim_ids()[lane];
+        // The same hit again, of a triangle that lies in several leaves, changes nothing.
+        let is_new = (prim & !SINGLE_SIDED) != best.prim;
+        let tie = (at & at.wrapping_sub(1) != 0) | ((nearest == best.t) & is_new);
         let is_marked = marks_count & (prim & SINGLE_SIDED != 0);
         if !(tie | (is_marked & (hits.back & at != 0))) {
             let [_, Stored(u), Stored(v)] = hits.store(simd);
@@ -86,7 +89,7 @@ pub(crate) fn improve_evenly<S: Width<P>, const P: usize, F: HitFilter, G: Goal>
 fn improve_by_lanes<S: Width<P>, const P: usize>(
     simd: S,
     hits: &LaneHits<S, P>,
-    packet: &TrianglePacket<P>,
+    packet: &impl Packet<P>,
     ray: &Ray,
     filter: &impl HitFilter,
     goal: impl Goal,
@@ -102,7 +105,7 @@ fn improve_by_lanes<S: Width<P>, const P: usize>(
             t: t[lane],
             u: u[lane],
             v: v[lane],
-            prim: packet.prim_ids[lane],
+            prim: packet.prim_ids()[lane],
         };
         let back = hits.back >> lane & 1 == 1;
         if improve(best, hit, back, ray, filter) {

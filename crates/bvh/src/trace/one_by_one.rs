@@ -9,7 +9,7 @@ use crate::layout::boxes::Boxes;
 use crate::layout::boxes::sealed::Sealed;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
-use crate::layout::triangle_packet::TrianglePacket;
+use crate::layout::packet::Packet;
 use crate::precision::ending::Early;
 use crate::precision::triangle::{OneTriangle, Shear};
 use crate::precision::triangle_test::Precision;
@@ -36,7 +36,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         hits: &mut [Hit],
         filter: &impl HitFilter,
@@ -52,7 +52,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         occluded: &mut [bool],
         filter: &impl HitFilter,
@@ -68,7 +68,7 @@ where
 fn query<S: Width<N>, const N: usize, const P: usize>(
     simd: S,
     precision: impl Precision,
-    bvh: BvhView<'_, N, P, impl Boxes<N>>,
+    bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
     ray: &Ray,
     filter: &impl HitFilter,
     goal: impl Goal,
@@ -156,10 +156,10 @@ unsafe impl<B: Boxes<N>, const N: usize> Boxes<1> for OneBox<'_, B, N> {
 }
 
 /// The search for one ray's hit.
-struct Search<'a, S: Width<1>, const P: usize, Pr, F, G> {
+struct Search<'a, S: Width<1>, const P: usize, Pr, T, F, G> {
     simd: S,
     precision: Pr,
-    packets: &'a [TrianglePacket<P>],
+    packets: &'a [T],
     shear: Shear<'a, S, 1>,
     ray: &'a Ray,
     filter: &'a F,
@@ -167,14 +167,14 @@ struct Search<'a, S: Width<1>, const P: usize, Pr, F, G> {
     best: Hit,
 }
 
-impl<S: Width<1>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
-    for Search<'_, S, P, Pr, F, G>
+impl<S: Width<1>, const P: usize, Pr: Precision, T: Packet<P>, F: HitFilter, G: Goal> Visitor
+    for Search<'_, S, P, Pr, T, F, G>
 {
     type Goal = G;
-    type Item = TrianglePacket<P>;
+    type Item = T;
 
     #[inline(always)]
-    fn items(&self) -> &[TrianglePacket<P>] {
+    fn items(&self) -> &[T] {
         self.packets
     }
 
@@ -187,7 +187,7 @@ impl<S: Width<1>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
     fn leaf(&mut self, leaf: Child) -> ControlFlow<()> {
         let first = leaf.first_packet();
         for packet in &self.packets[first..first + leaf.packet_count()] {
-            for (lane, &prim) in packet.prim_ids.iter().enumerate() {
+            for (lane, &prim) in packet.prim_ids().iter().enumerate() {
                 if prim == u32::MAX {
                     break;
                 }

@@ -17,6 +17,7 @@ use crate::filter::HitFilter;
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
+use crate::layout::packet::Packet;
 use crate::precision::triangle::{RayShear, Shear};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
@@ -108,20 +109,21 @@ impl Work {
 }
 
 /// What stays the same for all rays of a stream.
-pub(crate) struct PhasedKernel<'a, S, const N: usize, const P: usize, Pr, F, B, G> {
+pub(crate) struct PhasedKernel<'a, S, const N: usize, const P: usize, Pr, F, B, T, G> {
     pub(crate) simd: S,
     pub(crate) precision: Pr,
-    pub(crate) bvh: BvhView<'a, N, P, B>,
+    pub(crate) bvh: BvhView<'a, N, P, B, T>,
     pub(crate) filter: &'a F,
     pub(crate) goal: G,
 }
 
-impl<S, const N: usize, const P: usize, Pr, F, B, G> PhasedKernel<'_, S, N, P, Pr, F, B, G>
+impl<S, const N: usize, const P: usize, Pr, F, B, T, G> PhasedKernel<'_, S, N, P, Pr, F, B, T, G>
 where
     S: Width<N> + Width<P>,
     Pr: Precision,
     F: HitFilter,
     B: Boxes<N>,
+    T: Packet<P>,
     G: Goal,
 {
     /// Finds the hit of each ray; `answer` gets its index and the hit, in whatever order.

@@ -6,7 +6,7 @@ use crate::filter::HitFilter;
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::child::Child;
-use crate::layout::triangle_packet::TrianglePacket;
+use crate::layout::packet::Packet;
 use crate::precision::triangle::Shear;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
@@ -22,7 +22,7 @@ use crate::trace::traverse::{Visitor, traverse};
 pub fn closest_hit<S, const N: usize, const P: usize>(
     simd: S,
     precision: impl Precision,
-    bvh: BvhView<'_, N, P, impl Boxes<N>>,
+    bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
     ray: &Ray,
     filter: &impl HitFilter,
 ) -> Hit
@@ -38,7 +38,7 @@ where
 pub fn any_hit<S, const N: usize, const P: usize>(
     simd: S,
     precision: impl Precision,
-    bvh: BvhView<'_, N, P, impl Boxes<N>>,
+    bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
     ray: &Ray,
     filter: &impl HitFilter,
 ) -> bool
@@ -53,7 +53,7 @@ where
 pub(crate) fn query<S, const N: usize, const P: usize>(
     simd: S,
     precision: impl Precision,
-    bvh: BvhView<'_, N, P, impl Boxes<N>>,
+    bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
     ray: &Ray,
     filter: &impl HitFilter,
     goal: impl Goal,
@@ -94,7 +94,7 @@ where
 pub(crate) unsafe fn search<S, const N: usize, const P: usize>(
     simd: S,
     precision: impl Precision,
-    bvh: BvhView<'_, N, P, impl Boxes<N>>,
+    bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
     start: Child,
     ray: &Ray,
     tmin: f32,
@@ -114,10 +114,10 @@ where
 }
 
 /// The search for one ray's hit.
-pub(crate) struct Search<'a, S: Width<P>, const P: usize, Pr, F, G> {
+pub(crate) struct Search<'a, S: Width<P>, const P: usize, Pr, T, F, G> {
     simd: S,
     precision: Pr,
-    packets: &'a [TrianglePacket<P>],
+    packets: &'a [T],
     shear: Shear<'a, S, P>,
     ray: &'a Ray,
     filter: &'a F,
@@ -125,14 +125,14 @@ pub(crate) struct Search<'a, S: Width<P>, const P: usize, Pr, F, G> {
     best: Hit,
 }
 
-impl<S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
-    for Search<'_, S, P, Pr, F, G>
+impl<S: Width<P>, const P: usize, Pr: Precision, T: Packet<P>, F: HitFilter, G: Goal> Visitor
+    for Search<'_, S, P, Pr, T, F, G>
 {
     type Goal = G;
-    type Item = TrianglePacket<P>;
+    type Item = T;
 
     #[inline(always)]
-    fn items(&self) -> &[TrianglePacket<P>] {
+    fn items(&self) -> &[T] {
         self.packets
     }
 
@@ -161,15 +161,15 @@ impl<S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, G: Goal> Visitor
     }
 }
 
-impl<'a, S: Width<P>, const P: usize, Pr: Precision, F: HitFilter, G: Goal>
-    Search<'a, S, P, Pr, F, G>
+impl<'a, S: Width<P>, const P: usize, Pr: Precision, T: Packet<P>, F: HitFilter, G: Goal>
+    Search<'a, S, P, Pr, T, F, G>
 {
     /// For a hit better than `best`. The ray is valid, `tmin` not negative.
     #[inline(always)]
     pub(crate) fn new(
         simd: S,
         precision: Pr,
-        packets: &'a [TrianglePacket<P>],
+        packets: &'a [T],
         ray: &'a Ray,
         tmin: f32,
         filter: &'a F,

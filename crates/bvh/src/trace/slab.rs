@@ -17,7 +17,7 @@
 
 use crate::layout::boxes::Boxes;
 use crate::layout::class::Octant;
-use crate::layout::columns::{Columns, greatest, least};
+use crate::layout::columns::Columns;
 use crate::ray::Ray;
 use crate::simd::Width;
 
@@ -197,10 +197,9 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
         let (mut near_org, mut far_org) = ([0.0; 4], [0.0; 4]);
         let (mut near_inv, mut far_inv) = ([0.0; 4], [0.0; 4]);
         for axis in 0..3 {
-            let mut inverse = [0.0; R];
-            simd.store(inv[axis], &mut inverse);
-            let (lo_org, hi_org) = (least(rays.org[axis]), greatest(rays.org[axis]));
-            let (lo_inv, hi_inv) = (least(inverse), greatest(inverse));
+            let org = <S as Width<R>>::load(simd, &rays.org[axis]);
+            let (lo_org, hi_org) = range::<S, R>(simd, org);
+            let (lo_inv, hi_inv) = range::<S, R>(simd, inv[axis]);
             // Where planes lie behind an origin the bounds are wrong, but below zero as they
             // should.
             (near_org[axis], far_org[axis], near_inv[axis], far_inv[axis]) = if octant[axis] {
@@ -211,7 +210,9 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
         }
         let [near_inv, far_inv] = [near_inv, far_inv].map(|inv| <S as Width<4>>::load(simd, &inv));
         let constants = Constants::new(simd, near_org, near_inv, far_org, far_inv);
-        Slab::splat(simd, &constants, near_rows(octant), least(rays.tmin))
+        let tmin = <S as Width<R>>::load(simd, &rays.tmin);
+        let tmin = <S as Width<R>>::least(simd, tmin);
+        Slab::splat(simd, &constants, near_rows(octant), tmin)
     }
 
     #[inline(always)]
@@ -279,6 +280,12 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
         let plane = |axis: usize, row: usize| simd.splat(node.plane_of(slot, axis, row));
         self.touched(simd, plane, simd.load(tmax)).0
     }
+}
+
+/// The least and the greatest lane.
+#[inline(always)]
+fn range<S: Width<R>, const R: usize>(simd: S, lanes: S::Float) -> (f32, f32) {
+    (simd.least(lanes), simd.greatest(lanes))
 }
 
 #[inline(always)]

@@ -3,6 +3,7 @@
 use crate::filter::HitFilter;
 use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
+use crate::layout::packet::Packet;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
@@ -23,7 +24,7 @@ pub trait Kernel<S, const N: usize, const P: usize>: Copy {
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         hits: &mut [Hit],
         filter: &impl HitFilter,
@@ -37,7 +38,7 @@ pub trait Kernel<S, const N: usize, const P: usize>: Copy {
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         occluded: &mut [bool],
         filter: &impl HitFilter,
@@ -72,7 +73,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         hits: &mut [Hit],
         filter: &impl HitFilter,
@@ -88,7 +89,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         occluded: &mut [bool],
         filter: &impl HitFilter,
@@ -109,7 +110,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         hits: &mut [Hit],
         filter: &impl HitFilter,
@@ -130,7 +131,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         occluded: &mut [bool],
         filter: &impl HitFilter,
@@ -156,7 +157,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         hits: &mut [Hit],
         filter: &impl HitFilter,
@@ -168,6 +169,7 @@ where
             bvh,
             filter,
             goal: ClosestHit,
+            is_moderate: bvh.is_moderate(),
             few: 0,
         };
         for (rays, hits) in rays.chunks(WINDOW).zip(hits.chunks_mut(WINDOW)) {
@@ -180,7 +182,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         occluded: &mut [bool],
         filter: &impl HitFilter,
@@ -192,6 +194,7 @@ where
             bvh,
             filter,
             goal: AnyHit,
+            is_moderate: bvh.is_moderate(),
             few: 0,
         };
         let mut hits = [Hit::miss(0.0); WINDOW];
@@ -212,7 +215,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         hits: &mut [Hit],
         filter: &impl HitFilter,
@@ -233,7 +236,7 @@ where
         self,
         simd: S,
         precision: impl Precision,
-        bvh: BvhView<'_, N, P, impl Boxes<N>>,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
         rays: &[Ray],
         occluded: &mut [bool],
         filter: &impl HitFilter,

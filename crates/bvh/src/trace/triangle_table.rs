@@ -1,6 +1,6 @@
 //! All triangles of a tiny hierarchy, and each of their vertices once.
 
-use crate::layout::triangle_packet::TrianglePacket;
+use crate::layout::packet::Packet;
 
 /// So many triangles, whose vertices a byte can count.
 pub(crate) const MOST_TRIANGLES: usize = 85;
@@ -29,7 +29,7 @@ pub(crate) struct TriangleTable {
 impl TriangleTable {
     /// The triangles of a hierarchy's packets, if they are few.
     #[inline(never)]
-    pub(crate) fn of<const P: usize>(packets: &[TrianglePacket<P>]) -> Option<TriangleTable> {
+    pub(crate) fn of<const P: usize>(packets: &[impl Packet<P>]) -> Option<TriangleTable> {
         if packets.len() > MOST_TRIANGLES {
             return None;
         }
@@ -45,7 +45,7 @@ impl TriangleTable {
         };
         let mut index = VertexIndex::EMPTY;
         for packet in packets {
-            for (lane, &prim) in packet.prim_ids.iter().enumerate() {
+            for (lane, &prim) in packet.prim_ids().iter().enumerate() {
                 // What is split among leaves is there more than once.
                 if prim == u32::MAX || table.triangles().iter().any(|other| other.prim == prim) {
                     continue;
@@ -54,8 +54,7 @@ impl TriangleTable {
                     return None;
                 }
                 let mut corners = [0; 3];
-                for (corner, rows) in corners.iter_mut().zip(&packet.vertices) {
-                    let position = rows.map(|row| row[lane]);
+                for (corner, position) in corners.iter_mut().zip(packet.corners(lane)) {
                     *corner = table.index_of(position, &mut index);
                 }
                 table.triangles[table.triangle_count] = Indexed { corners, prim };

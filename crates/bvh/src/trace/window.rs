@@ -6,6 +6,7 @@ use crate::filter::HitFilter;
 use crate::layout::boxes::Boxes;
 use crate::layout::class::{Class, axes};
 use crate::layout::columns::Columns;
+use crate::layout::packet::Packet;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
@@ -75,11 +76,12 @@ pub(crate) fn runs(rays: &[Ray]) -> impl Iterator<Item = Run> {
     })
 }
 
-impl<S, const N: usize, const P: usize, Pr, F, B, G> PacketKernel<'_, S, N, P, Pr, F, B, G>
+impl<S, const N: usize, const P: usize, Pr, F, B, T, G> PacketKernel<'_, S, N, P, Pr, F, B, T, G>
 where
     Pr: Precision,
     F: HitFilter,
     B: Boxes<N>,
+    T: Packet<P>,
     G: Goal,
 {
     /// Traces at most [`WINDOW`] rays.
@@ -104,7 +106,10 @@ where
         const { assert!(R <= 32) };
         for (rays, hits) in rays.chunks(R).zip(hits.chunks_mut(R)) {
             let members = &IN_ORDER[..rays.len()];
-            let columns = Columns::<R>::gather(rays, members);
+            let columns = match rays.as_array::<R>() {
+                Some(rays) => Columns::of(self.simd, rays),
+                None => Columns::<R>::gather(rays, members),
+            };
             match columns.class(self.simd) {
                 Some(class) => self.trace(columns, rays, members, class, hits),
                 None => self.sort::<R>(rays, hits),

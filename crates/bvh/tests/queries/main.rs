@@ -2,6 +2,7 @@
 //! catalogue of hard numerical cases.
 
 mod agreement;
+mod compact;
 mod cost;
 mod dispatched;
 mod instanced_scene;
