@@ -837,6 +837,39 @@ fn lights() -> Vec<Tiny> {
             &point,
             lit(|b| b.light(PunctualKind::Directional { direction }, [1.0, 0.9, 0.8])),
         ),
+        Tiny::new(
+            "spherical_point",
+            &[Effect::SphericalPointLights],
+            &point,
+            lit(|b| {
+                b.light(PunctualKind::Point { position }, [3.0, 2.5, 2.0]);
+                b.size_of_light(0.3);
+            }),
+        ),
+        Tiny::new(
+            "spherical_spot",
+            &[Effect::SphericalSpotLights],
+            &point,
+            lit(|b| {
+                let kind = PunctualKind::Spot {
+                    position,
+                    direction,
+                    inner: 0.4,
+                    outer: 0.7,
+                };
+                b.light(kind, [3.0, 2.5, 2.0]);
+                b.size_of_light(0.3);
+            }),
+        ),
+        Tiny::new(
+            "sun",
+            &[Effect::Suns],
+            &point,
+            lit(|b| {
+                b.light(PunctualKind::Directional { direction }, [1.0, 0.9, 0.8]);
+                b.size_of_light(0.1);
+            }),
+        ),
         Tiny::new("environment", &[Effect::Environment], &point, {
             let mut image = 0;
             let mut scene = lit(|b| image = b.floats(8, 4));

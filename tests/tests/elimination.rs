@@ -70,6 +70,9 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("(Point, ", &[Effect::PointLights]),
     ("(Spot, ", &[Effect::SpotLights]),
     ("(Directional, ", &[Effect::DirectionalLights]),
+    ("(SphericalPoint, ", &[Effect::SphericalPointLights]),
+    ("(SphericalSpot, ", &[Effect::SphericalSpotLights]),
+    ("(Sun, ", &[Effect::Suns]),
     ("(Environment, ", &[Effect::Environment]),
     ("Perspective", &[Effect::PerspectiveCamera]),
     ("ThinLens", &[Effect::DepthOfField]),
@@ -119,14 +122,25 @@ const SOURCES: &[(&str, &[Effect])] = &[
     ("render/src/tracer/absorbing.rs", &[Effect::Absorption]),
     ("render/src/tracer/dispersing.rs", &[Effect::Dispersion]),
     ("render/src/light/area.rs", &[Effect::EmittingSurfaces]),
+    ("render/src/light/sized.rs", SIZED_LIGHTS),
     (
         "render/src/light/punctual.rs",
         &[
             Effect::PointLights,
             Effect::SpotLights,
             Effect::DirectionalLights,
+            Effect::SphericalPointLights,
+            Effect::SphericalSpotLights,
+            Effect::Suns,
         ],
     ),
+];
+
+/// What lights with a size are called for by.
+const SIZED_LIGHTS: &[Effect] = &[
+    Effect::SphericalPointLights,
+    Effect::SphericalSpotLights,
+    Effect::Suns,
 ];
 
 /// Files that every renderer may contain.

@@ -75,7 +75,10 @@ goldens! {
     soap_film
     solid_glass
     specular_texture
+    spherical_point
+    spherical_spot
     spot_light
+    sun
     texture
     texture_transform
     textured_emission

@@ -72,6 +72,12 @@ pub(crate) struct SceneArgs {
     /// Turn of the environment about +Y
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "env", allow_negative_numbers = true, value_parser = finite::<f32>)]
     pub(crate) env_rotate: f32,
+    /// Angle of the disc that a directional light of the scene is in the sky, from edge to edge: 0.526 is the sun's
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = sun_angle)]
+    pub(crate) sun_angle: Option<f32>,
+    /// Radius of the spheres that point and spot lights of the scene are, in units of the scene
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = non_negative)]
+    pub(crate) light_radius: Option<f32>,
     /// When a studio lights the scene: soft boxes before grey walls
     #[arg(long, value_enum, default_value_t = StudioArg::Auto)]
     pub(crate) studio: StudioArg,
@@ -335,6 +341,14 @@ fn non_negative(text: &str) -> Result<f32, String> {
     }
 }
 
+fn sun_angle(text: &str) -> Result<f32, String> {
+    let degrees: f32 = finite(text)?;
+    match (0.0..=180.0).contains(&degrees) {
+        true => Ok(degrees),
+        false => Err("expected an angle from 0 to 180 degrees".to_owned()),
+    }
+}
+
 fn field_of_view(text: &str) -> Result<f32, String> {
     let degrees: f32 = finite(text)?;
     let fits = degrees > 0.0 && degrees < 180.0;
@@ -363,5 +377,6 @@ mod tests {
             "0,0,-0".parse::<Direction>().is_err() && "0,1e-300,0".parse::<Direction>().is_ok()
         );
         assert!(field_of_view("180").is_err());
+        assert!(sun_angle("180").is_ok() && sun_angle("-1").is_err() && sun_angle("181").is_err());
     }
 }

@@ -66,6 +66,7 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             strict: args.strict,
         },
     )?;
+    set_light_sizes(args, &mut scene);
     let needs_light = matches!(args.tracer, TracerArg::Path) && !scene.instances.is_empty();
     match args.studio {
         StudioArg::Auto if needs_light && scene.is_unlit() => {
@@ -122,6 +123,33 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
         flat_normals: false,
     };
     Ok((scene, options))
+}
+
+/// Gives the scene's lights the sizes that are asked for, and warns where there are no such lights.
+fn set_light_sizes(args: &SceneArgs, scene: &mut SceneDesc) {
+    let has = |scene: &SceneDesc, directional: bool| {
+        let mut lights = scene.lights.iter();
+        lights.any(|light| light.is_directional() == directional)
+    };
+    let unused = |option: &str, lights: &str| Warning {
+        kind: WarningKind::Unused,
+        place: option.to_owned(),
+        message: format!("the scene has no {lights}"),
+    };
+    if let Some(degrees) = args.sun_angle {
+        if !has(scene, true) {
+            let warning = unused("--sun-angle", "directional light");
+            scene.warnings.push(warning);
+        }
+        scene.set_sun_angle(degrees.to_radians());
+    }
+    if let Some(radius) = args.light_radius {
+        if !has(scene, false) {
+            let warning = unused("--light-radius", "point or spot light");
+            scene.warnings.push(warning);
+        }
+        scene.set_light_radius(radius);
+    }
 }
 
 /// Reads and plans the scene; warnings go to standard error.

@@ -7,7 +7,7 @@ use residual_render::bsdf::{
 use residual_render::domain::{Buffer, Domain, Lanes};
 use residual_render::light::{
     self, Area, AreaRecord, Directional, Environment, LightKind, LightSample, Point,
-    PunctualRecord, Spot,
+    PunctualRecord, SphericalPoint, SphericalSpot, Spot, Sun,
 };
 use residual_render::math::vec3::vec3;
 use residual_render::sampler::{AnySampler, SampleKey, Sampler};
@@ -142,7 +142,16 @@ macro_rules! light_formula {
     )*};
 }
 
-light_formula!(Area<Const<[f32; 3]>>, Point, Spot, Directional, Environment);
+light_formula!(
+    Area<Const<[f32; 3]>>,
+    Point,
+    Spot,
+    Directional,
+    SphericalPoint,
+    SphericalSpot,
+    Sun,
+    Environment
+);
 
 #[test]
 fn lights_agree() {
@@ -166,6 +175,15 @@ fn lights_agree() {
     check("point", &data, &Light(Point), &inputs);
     check("spot", &data, &Light(Spot), &inputs);
     check("directional", &data, &Light(Directional), &inputs);
+    // The floor, on which the points lie, is without and within.
+    for radius in [0.01, 0.9, 1.2] {
+        set_lights(&mut data, &[spot.with_radius(radius)], &[1.0]);
+        check("sphere", &data, &Light(SphericalPoint), &inputs);
+        check("spot sphere", &data, &Light(SphericalSpot), &inputs);
+    }
+    let sun = PunctualRecord::sun(0, [0.6, 0.0, 0.8], [5.0, 4.0, 3.0], 0.01);
+    set_lights(&mut data, &[sun], &[1.0]);
+    check("sun", &data, &Light(Sun), &inputs);
     let mut rng = Rng::new(47);
     let texels: Vec<_> = (0..21).map(|_| rng.unit3()).collect();
     set_environment(&mut data, 7, &texels, 0.7);

@@ -3,8 +3,8 @@
 use residual_render::texture::srgb_table;
 
 use crate::desc::{
-    AlphaMode, ColorInput, Filter, MaterialDesc, PhongSurface, PunctualKind, ScalarInput,
-    SceneDesc, SurfaceDesc, Texels, TextureUse,
+    AlphaMode, ColorInput, Filter, LightDesc, MaterialDesc, PhongSurface, PunctualKind,
+    ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse,
 };
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
@@ -37,6 +37,8 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::EmittingSurfaces => "dark",
         Effect::TexturedEmission => "its mean",
         Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => "off",
+        Effect::SphericalPointLights | Effect::SphericalSpotLights => "without a radius",
+        Effect::Suns => "without an angle",
         Effect::Environment => "black",
         Effect::DepthOfField => "a pinhole",
         Effect::LightTree => "picked from a table",
@@ -74,15 +76,13 @@ pub fn without(
         Effect::SmoothNormals => options.flat_normals = true,
         Effect::BackFaceCulling => options.culling = CullingRule::None,
         Effect::LightTree => options.light_picks = LightPicks::Mixed,
-        Effect::PointLights => scene
-            .lights
-            .retain(|light| !matches!(light.kind, PunctualKind::Point { .. })),
-        Effect::SpotLights => scene
-            .lights
-            .retain(|light| !matches!(light.kind, PunctualKind::Spot { .. })),
-        Effect::DirectionalLights => scene
-            .lights
-            .retain(|light| !matches!(light.kind, PunctualKind::Directional { .. })),
+        Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => {
+            let lights = &mut scene.lights;
+            lights.retain(|light| light.size > 0.0 || light_effect(light) != effect);
+        }
+        Effect::SphericalPointLights => take_sizes(Effect::PointLights, &mut scene),
+        Effect::SphericalSpotLights => take_sizes(Effect::SpotLights, &mut scene),
+        Effect::Suns => take_sizes(Effect::DirectionalLights, &mut scene),
         Effect::Environment => scene.environment = None,
         Effect::DepthOfField => options.optics = Optics::Projection,
         _ => {
@@ -92,6 +92,23 @@ pub fn without(
         }
     }
     Some((scene, options))
+}
+
+/// What a light without a size calls for.
+fn light_effect(light: &LightDesc) -> Effect {
+    match light.kind {
+        PunctualKind::Point { .. } => Effect::PointLights,
+        PunctualKind::Spot { .. } => Effect::SpotLights,
+        PunctualKind::Directional { .. } => Effect::DirectionalLights,
+    }
+}
+
+/// Takes the size of the lights that would call for an effect without it.
+fn take_sizes(effect: Effect, scene: &mut SceneDesc) {
+    let lights = scene.lights.iter_mut();
+    for light in lights.filter(|light| light_effect(light) == effect) {
+        light.size = 0.0;
+    }
 }
 
 /// Takes an effect out of a material.

@@ -69,6 +69,8 @@ pub enum WarningKind {
     NoCamera,
     /// A mesh that nobody could see is left out.
     Invisible,
+    /// The user asked for something that the scene has no use for.
+    Unused,
 }
 
 /// Something of the file that the image will lack or show differently.
@@ -262,6 +264,9 @@ pub struct LightDesc {
     /// Colour × intensity: W/(sr·m²)-like photometric units are taken as radiometric, one for one.
     /// Radiant intensity for point and spot, irradiance at normal incidence for directional.
     pub intensity: [f32; 3],
+    /// Radius of a point or spot light, in units of the scene; angular diameter of a directional one, in radians, up to π.
+    /// 0 of lights without a size, as those of files are.
+    pub size: f32,
 }
 
 /// Kinds of punctual lights.

@@ -285,6 +285,9 @@ fn light_effect(light: &LightNode) -> Effect {
         LightNode::Point => Effect::PointLights,
         LightNode::Spot => Effect::SpotLights,
         LightNode::Directional => Effect::DirectionalLights,
+        LightNode::SphericalPoint => Effect::SphericalPointLights,
+        LightNode::SphericalSpot => Effect::SphericalSpotLights,
+        LightNode::Sun => Effect::Suns,
         LightNode::Environment => Effect::Environment,
     }
 }

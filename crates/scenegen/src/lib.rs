@@ -11,6 +11,7 @@ pub mod emit;
 mod fingerprint;
 mod ground;
 pub mod import;
+mod light_sizes;
 pub mod plan;
 mod sixteen_bits;
 mod studio;

@@ -222,6 +222,9 @@ pub(crate) fn light_kinds() -> Vec<LightNode> {
         LightNode::Point,
         LightNode::Spot,
         LightNode::Directional,
+        LightNode::SphericalPoint,
+        LightNode::SphericalSpot,
+        LightNode::Sun,
         LightNode::Environment,
     ]
 }

@@ -228,11 +228,21 @@ impl PlannedLights {
         // The kind is known below.
         let record =
             |position: glam::Vec3| PunctualRecord::new(0, position.to_array(), light.intensity);
-        let point = |position: glam::Vec3| LightBounds::point(position.as_dvec3(), strength);
+        let size = light.size;
+        let point = |position: glam::Vec3| LightBounds {
+            corners: [-size, size].map(|size| position.as_dvec3() + f64::from(size)),
+            ..LightBounds::point(position.as_dvec3(), strength)
+        };
+        let sized = |record: PunctualRecord, without: LightNode, with: LightNode| match size {
+            0.0 => (without, record),
+            _ => (with, record.with_radius(size)),
+        };
         let (node, power, record, reach) = match light.kind {
             PunctualKind::Point { position } => {
                 let reach = Reach::Bounded(point(position));
-                (LightNode::Point, sphere * strength, record(position), reach)
+                let record = record(position);
+                let (node, record) = sized(record, LightNode::Point, LightNode::SphericalPoint);
+                (node, sphere * strength, record, reach)
             }
             PunctualKind::Spot {
                 position,
@@ -253,16 +263,19 @@ impl PlannedLights {
                     half_angle: 0.0,
                     ..point(position)
                 });
-                (LightNode::Spot, cone * strength, record, reach)
+                let (node, record) = sized(record, LightNode::Spot, LightNode::SphericalSpot);
+                (node, cone * strength, record, reach)
             }
             PunctualKind::Directional { direction } => {
                 let power = std::f64::consts::PI * radius * radius * strength;
-                (
-                    LightNode::Directional,
-                    power,
-                    record(-direction),
-                    Reach::Everywhere,
-                )
+                let sun = |towards: glam::Vec3| {
+                    PunctualRecord::sun(0, towards.to_array(), light.intensity, size)
+                };
+                let (node, record) = match size {
+                    0.0 => (LightNode::Directional, record(-direction)),
+                    _ => (LightNode::Sun, sun(-direction)),
+                };
+                (node, power, record, Reach::Everywhere)
             }
         };
         let kind = self.kind(node);

@@ -264,6 +264,9 @@ pub(crate) fn lights() -> Vec<LightNode> {
         LightNode::Point,
         LightNode::Spot,
         LightNode::Directional,
+        LightNode::SphericalPoint,
+        LightNode::SphericalSpot,
+        LightNode::Sun,
         LightNode::Environment,
     ]
 }
