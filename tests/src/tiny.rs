@@ -526,6 +526,12 @@ fn textures() -> Vec<Tiny> {
             wrapped(Wrap::Clamp),
         ),
         Tiny::new(
+            "border_wrap",
+            &instead(Effect::RepeatWrap, Effect::BorderWrap),
+            &[],
+            wrapped(Wrap::WhiteBorder),
+        ),
+        Tiny::new(
             "float_texels",
             &instead(Effect::SrgbTexels, Effect::FloatTexels),
             &[],

@@ -33,6 +33,7 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("Repeat", &[Effect::RepeatWrap]),
     ("MirroredRepeat", &[Effect::MirrorWrap]),
     ("Clamp", &[Effect::ClampWrap]),
+    ("WhiteBorder", &[Effect::BorderWrap]),
     ("SrgbRgba8", &[Effect::SrgbTexels]),
     ("LinearRgba8", &[Effect::LinearTexels]),
     ("LinearFloat", &[Effect::FloatTexels]),
@@ -82,9 +83,18 @@ const WORDS: &[(&str, &[Effect])] = &[
 
 /// Source files of renderers, and the effects that alone call for them.
 const SOURCES: &[(&str, &[Effect])] = &[
+    ("render/src/texture/image.rs", &[Effect::Textures]),
     // Environments are images, too.
     (
-        "render/src/texture/image.rs",
+        "render/src/texture/wrapping.rs",
+        &[Effect::Textures, Effect::Environment],
+    ),
+    (
+        "render/src/texture/filtering.rs",
+        &[Effect::Textures, Effect::Environment],
+    ),
+    (
+        "render/src/texture/texel_format.rs",
         &[Effect::Textures, Effect::Environment],
     ),
     (

@@ -35,6 +35,7 @@ macro_rules! goldens {
 goldens! {
     alpha_blending
     alpha_mask
+    border_wrap
     brushed_metal
     bumpy_coat
     car_paint

@@ -222,7 +222,14 @@ fn textures_agree() {
     let moderate = reals(49, |r| {
         [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]
     });
-    for wrap in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
+    for wrap in [
+        AnyWrap::Repeat,
+        AnyWrap::MirroredRepeat,
+        AnyWrap::Clamp,
+        AnyWrap::WhiteBorder,
+        AnyWrap::BlackBorder,
+        AnyWrap::FlatBorder,
+    ] {
         for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
             for format in [
                 AnyFormat::SrgbRgba8,

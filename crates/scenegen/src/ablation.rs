@@ -48,6 +48,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         | Effect::RepeatWrap
         | Effect::MirrorWrap
         | Effect::ClampWrap
+        | Effect::BorderWrap
         | Effect::SrgbTexels
         | Effect::LinearTexels
         | Effect::FloatTexels

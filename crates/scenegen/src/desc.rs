@@ -116,8 +116,12 @@ pub enum Wrap {
     Repeat,
     /// Tiles, every other one mirrored.
     Mirror,
-    /// The border texel goes on.
+    /// The texels at the edge go on.
     Clamp,
+    /// The image is there once, and white around it: there, factors count alone. Around a normal map, normals are the mesh's.
+    WhiteBorder,
+    /// The image is there once, and black around it. Around a normal map, normals are the mesh's.
+    BlackBorder,
 }
 
 /// How texels are combined.

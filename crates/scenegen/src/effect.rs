@@ -46,6 +46,7 @@ effects! {
     RepeatWrap = "repeat wrap",
     MirrorWrap = "mirror wrap",
     ClampWrap = "clamp wrap",
+    BorderWrap = "border wrap",
     SrgbTexels = "sRGB texels",
     LinearTexels = "linear texels",
     FloatTexels = "float texels",

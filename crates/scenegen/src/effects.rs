@@ -261,6 +261,7 @@ fn wrap_effect(wrap: AnyWrap) -> Effect {
         AnyWrap::Repeat => Effect::RepeatWrap,
         AnyWrap::MirroredRepeat => Effect::MirrorWrap,
         AnyWrap::Clamp => Effect::ClampWrap,
+        AnyWrap::WhiteBorder | AnyWrap::BlackBorder | AnyWrap::FlatBorder => Effect::BorderWrap,
     }
 }
 

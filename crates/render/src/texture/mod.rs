@@ -6,18 +6,23 @@
 
 mod checkerboard;
 mod dispersive;
+mod filtering;
 mod image;
 mod params;
 mod srgb;
+mod texel_format;
+mod wrapping;
 
 pub use checkerboard::Checkerboard;
 pub use dispersive::Dispersive;
-pub use image::{
-    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8,
-    MirroredRepeat, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
-};
+pub use filtering::{AnyFilter, Bilinear, Filtering, Nearest};
+pub use image::{Image, UvMap};
 pub use params::{ColorParam, ImageParam, TransformParam};
 pub use srgb::{srgb_code, srgb_decoded, srgb_table};
+pub use texel_format::{AnyFormat, LinearFloat, LinearRgba8, SrgbRgba8, TexelFormat};
+pub use wrapping::{
+    AnyWrap, BlackBorder, Clamp, FlatBorder, MirroredRepeat, Repeat, WhiteBorder, Wrapping,
+};
 
 use crate::domain::{Buffer, Domain};
 use crate::math::vec3::lit3;

@@ -175,7 +175,7 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
 
 /// Image number `k` of all combinations of wrapping, filter, format, coordinates and transform.
 pub(crate) fn image(k: usize) -> ImageNode {
-    let wraps = [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp];
+    let wraps = [AnyWrap::Repeat, AnyWrap::WhiteBorder, AnyWrap::Clamp];
     let filters = [AnyFilter::Nearest, AnyFilter::Bilinear];
     let formats = [
         AnyFormat::SrgbRgba8,

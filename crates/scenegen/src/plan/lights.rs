@@ -20,7 +20,8 @@ use super::options::LightPicks;
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
 use crate::desc::{
-    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, SurfaceDesc, Texels,
+    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, SurfaceDesc,
+    Texels, Wrap,
 };
 use crate::sixteen_bits;
 
@@ -134,7 +135,15 @@ fn mean_emission(scene: &SceneDesc, input: &ColorInput) -> f64 {
             .map(|t| luminance([r * t[0], g * t[1], b * t[2]]))
             .sum(),
     };
-    sum / (f64::from(image.width) * f64::from(image.height))
+    let mean = sum / (f64::from(image.width) * f64::from(image.height));
+    // How much is around the image is not known.
+    match scene.textures[texture.texture]
+        .wrap
+        .contains(&Wrap::WhiteBorder)
+    {
+        true => 0.5 * (mean + luminance(input.factor)),
+        false => mean,
+    }
 }
 
 impl PlannedLights {

@@ -63,7 +63,7 @@ impl Builder<'_> {
                 .dismiss(Effect::NormalMaps, "its normal map bends no normal");
             return None;
         }
-        let texel = self.sources.linear_texel(&map.texture);
+        let texel = self.sources.normal_texel(&map.texture);
         let scale = self.sources.number(map.scale);
         Some(NormalNode {
             texel: self.color("normal_texel", texel),

@@ -321,8 +321,18 @@ impl<'a> Sources<'a> {
     }
 
     fn extremes(&mut self, texture: &TextureUse, channel: usize, bytes: AnyFormat) -> [f32; 2] {
-        let image = self.scene.textures[texture.texture].image;
-        self.images.extremes(self.scene, image, channel, bytes)
+        let desc = &self.scene.textures[texture.texture];
+        let [mut least, mut greatest] =
+            self.images.extremes(self.scene, desc.image, channel, bytes);
+        // What is around the image counts, too.
+        for wrap in desc.wrap {
+            match wrap {
+                Wrap::WhiteBorder => [least, greatest] = [least.min(1.0), greatest.max(1.0)],
+                Wrap::BlackBorder => [least, greatest] = [least.min(0.0), greatest.max(0.0)],
+                Wrap::Repeat | Wrap::Mirror | Wrap::Clamp => {}
+            }
+        }
+        [least, greatest]
     }
 
     fn dismiss_image(&mut self, texture: &TextureUse, reason: &str) {
@@ -343,6 +353,17 @@ impl<'a> Sources<'a> {
         ColorNode::Image(self.image(texture, 0, AnyFormat::LinearRgba8))
     }
 
+    /// The texel of a map of normals.
+    pub(super) fn normal_texel(&mut self, texture: &TextureUse) -> ColorNode {
+        let mut image = self.image(texture, 0, AnyFormat::LinearRgba8);
+        for wrap in [&mut image.wrap.0, &mut image.wrap.1] {
+            if let AnyWrap::WhiteBorder | AnyWrap::BlackBorder = wrap {
+                *wrap = AnyWrap::FlatBorder;
+            }
+        }
+        ColorNode::Image(image)
+    }
+
     fn image(&mut self, texture: &TextureUse, channel: u32, bytes: AnyFormat) -> ImageNode {
         let desc = &self.scene.textures[texture.texture];
         let format = match self.scene.images[desc.image].texels {
@@ -353,6 +374,8 @@ impl<'a> Sources<'a> {
             Wrap::Repeat => AnyWrap::Repeat,
             Wrap::Mirror => AnyWrap::MirroredRepeat,
             Wrap::Clamp => AnyWrap::Clamp,
+            Wrap::WhiteBorder => AnyWrap::WhiteBorder,
+            Wrap::BlackBorder => AnyWrap::BlackBorder,
         });
         let filter = match desc.filter {
             Filter::Nearest => AnyFilter::Nearest,

@@ -167,7 +167,7 @@ pub(crate) fn images() -> Vec<ImageNode> {
     {
         for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
             for u in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
-                for v in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
+                for v in [AnyWrap::Repeat, AnyWrap::FlatBorder, AnyWrap::Clamp] {
                     let uv = UvMap {
                         set: k % 2,
                         transform: (k > 0).then_some(20),
