@@ -7,11 +7,11 @@ use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{
     AlphaMode, Attenuation, ColorInput, EnvironmentDesc, Filter, MaterialDesc, MeshDesc,
     MetallicRoughness, NormalMap, PhongSurface, Projection, PunctualKind, ScalarInput, SceneDesc,
-    SurfaceDesc, TextureUse, Wrap,
+    SurfaceDesc, Texels, TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::plan::{
-    Aperture, Binding, Focus, LightPicks, Optics, Plan, PlanOptions, plan,
+    Aperture, Binding, Focus, LightPicks, Optics, Plan, PlanOptions, TextureResolution, plan,
 };
 
 use crate::fixtures::{
@@ -505,6 +505,19 @@ fn textures() -> Vec<Tiny> {
         SRGB.iter().map(swap).collect()
     };
     let wrapped = |wrap| textured(false, [wrap; 2], linear, printed);
+    let mut mipmaps = Tiny::new(
+        "mipmaps",
+        &instead(Effect::BilinearFilter, Effect::Mipmaps),
+        &[],
+        textured(false, REPEAT, Filter::Mipmapped, printed),
+    );
+    mipmaps.options.textures = TextureResolution::Filtered;
+    let mut halves = textured(true, REPEAT, linear, printed);
+    if let Texels::RgbaF32(texels) = &mut halves.images[0].texels {
+        for channel in texels.iter_mut().flatten() {
+            *channel = (*channel * 256.0).round() / 256.0;
+        }
+    }
     vec![
         Tiny::new("texture", &SRGB, &[], with(|_| {})),
         Tiny::new(
@@ -530,6 +543,13 @@ fn textures() -> Vec<Tiny> {
             &instead(Effect::RepeatWrap, Effect::BorderWrap),
             &[],
             wrapped(Wrap::WhiteBorder),
+        ),
+        mipmaps,
+        Tiny::new(
+            "half_texels",
+            &instead(Effect::SrgbTexels, Effect::HalfTexels),
+            &[],
+            halves,
         ),
         Tiny::new(
             "float_texels",

@@ -53,6 +53,7 @@ goldens! {
     float_texels
     dielectric_coat
     frosted_glass
+    half_texels
     independent_sampler
     light_tree
     linear_texels
@@ -60,6 +61,7 @@ goldens! {
     matte
     metal
     mirror
+    mipmaps
     mirror_wrap
     mixed_metal
     nearest_filter

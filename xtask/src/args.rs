@@ -12,7 +12,7 @@ use residual_scenegen::plan::{Aperture, Focus, Optics};
 
 use crate::choices::{
     CullingArg, DeviceArg, LightsArg, MappingArg, MisArg, SamplerArg, SpecializeArg, StudioArg,
-    TargetArg, TierArg, TracerArg, ViewArg,
+    TargetArg, TexturesArg, TierArg, TracerArg, ViewArg,
 };
 use crate::compare::args::CompareArgs;
 
@@ -147,6 +147,9 @@ pub(crate) struct SceneArgs {
     /// Where random numbers come from
     #[arg(long, value_enum, default_value_t = SamplerArg::Sobol)]
     pub(crate) sampler: SamplerArg,
+    /// At which resolution colours are read from textures whose samplers ask for mipmaps
+    #[arg(long, value_enum, default_value_t = TexturesArg::Full)]
+    pub(crate) textures: TexturesArg,
     /// How often each light is picked
     #[arg(long, value_enum, default_value_t = LightsArg::Auto)]
     pub(crate) lights: LightsArg,

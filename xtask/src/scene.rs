@@ -12,11 +12,14 @@ use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{
-    Binding, CameraChoice, CullingRule, LightPicks, Plan, PlanOptions, View, plan,
+    Binding, CameraChoice, CullingRule, LightPicks, Plan, PlanOptions, TextureResolution, View,
+    plan,
 };
 
 use crate::args::SceneArgs;
-use crate::choices::{CullingArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TracerArg};
+use crate::choices::{
+    CullingArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TexturesArg, TracerArg,
+};
 
 /// What statistics say about a planned scene.
 pub(crate) fn summary(plan: &Plan) -> SceneSummary {
@@ -113,6 +116,10 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             LightsArg::Power => LightPicks::Power,
             LightsArg::Uniform => LightPicks::Uniform,
             LightsArg::Tree => LightPicks::Tree,
+        },
+        textures: match args.textures {
+            TexturesArg::Full => TextureResolution::Full,
+            TexturesArg::Filtered => TextureResolution::Filtered,
         },
         sampler: match args.sampler {
             SamplerArg::Sobol => AnySampler::Sobol,

@@ -10,9 +10,10 @@ use residual_render::light::{
     PunctualRecord, SphericalPoint, SphericalSpot, Spot, Sun,
 };
 use residual_render::math::vec3::vec3;
+use residual_render::record::BufferRecord;
 use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{Attributes, Surface, SurfaceHit};
+use residual_render::surface::{Attributes, Footprint, Surface, SurfaceHit};
 use residual_render::texture::{
     AnyFilter, AnyFormat, AnyWrap, Checkerboard, ColorSource, Const, Image, ImageParam,
     ScalarSource, TransformParam, UvMap,
@@ -196,6 +197,12 @@ impl Formula for Texture {
     fn run<D: Lanes>(&self, d: D, x: &[D::U]) -> Vec<D::U> {
         let mut surface = floor(d);
         surface.uv[0] = [d.from_bits(x[0]), d.from_bits(x[1])];
+        // Of all levels.
+        surface.footprint = Footprint {
+            width: d.max(d.min(d.abs(surface.uv[0][0]), d.lit(8.0)), d.lit(0.0)),
+            uv_areas: [d.lit(0.02); 2],
+            random: d.lit(0.4),
+        };
         let scalar = self.0.scalar(d, &surface);
         words(
             d,
@@ -217,8 +224,19 @@ fn textures_agree() {
             first: 0,
             width: 5,
             height: 7,
+            levels: 4 * 35,
         },
     );
+    let sizes = [[5, 7], [2, 3], [1, 1]];
+    for (first, [width, height]) in [0, 40, 70].into_iter().zip(sizes) {
+        let level = ImageParam {
+            first,
+            width,
+            height,
+            levels: 4 * 35,
+        };
+        level.append_to(data.buffer_mut(Buffer::Texels));
+    }
     let moderate = reals(49, |r| {
         [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]
     });
@@ -230,10 +248,15 @@ fn textures_agree() {
         AnyWrap::BlackBorder,
         AnyWrap::FlatBorder,
     ] {
-        for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
+        for filter in [
+            AnyFilter::Nearest,
+            AnyFilter::Bilinear,
+            AnyFilter::Trilinear,
+        ] {
             for format in [
                 AnyFormat::SrgbRgba8,
                 AnyFormat::LinearRgba8,
+                AnyFormat::LinearHalf,
                 AnyFormat::LinearFloat,
             ] {
                 let uv = UvMap {

@@ -18,5 +18,6 @@ mod sampler;
 mod spawn;
 mod spectrum;
 mod support;
+mod texture_levels;
 mod textures;
 mod vectors;

@@ -91,6 +91,7 @@ fn numbered(width: u32, height: u32) -> SceneData {
             first: 8,
             width,
             height,
+            levels: 0,
         },
     );
     data

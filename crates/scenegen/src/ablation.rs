@@ -8,7 +8,7 @@ use crate::desc::{
 };
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
-use crate::plan::{CullingRule, LightPicks, Optics, PlanOptions};
+use crate::plan::{CullingRule, LightPicks, Optics, PlanOptions, TextureResolution};
 use crate::sixteen_bits;
 
 /// How an effect is taken out of a scene, in words; `None` for those without which there is no picture, or which
@@ -28,6 +28,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::Textures => "their mean values; alpha, normal maps and emission stay",
         Effect::ProceduralTextures => "the mean of their colours",
         Effect::BilinearFilter => "the nearest texel",
+        Effect::Mipmaps => "the full resolution",
         Effect::TextureTransforms => "coordinates as they are",
         Effect::VertexColors => "white",
         Effect::SmoothNormals => "flat triangles",
@@ -51,6 +52,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         | Effect::BorderWrap
         | Effect::SrgbTexels
         | Effect::LinearTexels
+        | Effect::HalfTexels
         | Effect::FloatTexels
         | Effect::SecondUvSet
         | Effect::PerspectiveCamera
@@ -73,6 +75,7 @@ pub fn without(
             let textures = scene.textures.iter_mut();
             textures.for_each(|texture| texture.filter = Filter::Nearest);
         }
+        Effect::Mipmaps => options.textures = TextureResolution::Full,
         Effect::VertexColors => scene.meshes.iter_mut().for_each(|mesh| mesh.colors = None),
         Effect::SmoothNormals => options.flat_normals = true,
         Effect::BackFaceCulling => options.culling = CullingRule::None,

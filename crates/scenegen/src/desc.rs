@@ -132,6 +132,8 @@ pub enum Filter {
     /// Bilinear.
     #[default]
     Linear,
+    /// Bilinear, and where texels are smaller than what is seen of the surface, as if they were as large: by mipmaps.
+    Mipmapped,
 }
 
 /// An image with a sampler.
@@ -141,7 +143,7 @@ pub struct TextureDesc {
     pub image: usize,
     /// Along u and v.
     pub wrap: [Wrap; 2],
-    /// Magnification filter (there is no minification filter yet).
+    /// How texels are combined.
     pub filter: Filter,
 }
 

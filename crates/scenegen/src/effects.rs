@@ -269,6 +269,7 @@ fn filter_effect(filter: AnyFilter) -> Effect {
     match filter {
         AnyFilter::Nearest => Effect::NearestFilter,
         AnyFilter::Bilinear => Effect::BilinearFilter,
+        AnyFilter::Trilinear => Effect::Mipmaps,
     }
 }
 
@@ -276,6 +277,7 @@ fn format_effect(format: AnyFormat) -> Effect {
     match format {
         AnyFormat::SrgbRgba8 => Effect::SrgbTexels,
         AnyFormat::LinearRgba8 => Effect::LinearTexels,
+        AnyFormat::LinearHalf => Effect::HalfTexels,
         AnyFormat::LinearFloat => Effect::FloatTexels,
     }
 }

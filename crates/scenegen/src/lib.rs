@@ -10,6 +10,7 @@ pub mod effects;
 pub mod emit;
 mod fingerprint;
 mod ground;
+mod half;
 pub mod import;
 mod light_sizes;
 pub mod plan;

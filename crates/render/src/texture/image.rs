@@ -6,39 +6,15 @@
 //! Texel centres lie at half-integers; row 0 is at v = 0.
 
 use super::filtering::Filtering;
-use super::params::{ImageParam, TransformParam};
+use super::params::ImageParam;
 use super::texel_format::TexelFormat;
+use super::uv_map::UvMap;
 use super::wrapping::Wrapping;
 use super::{ColorSource, ScalarSource};
 use crate::domain::{Buffer, Bundle, Domain, One};
+use crate::math::Color;
 use crate::math::vec3::lit3;
-use crate::math::{Color, Vec3};
 use crate::surface::Surface;
-
-/// Which texture coordinates are read, and through which affine map.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UvMap {
-    /// 0 or 1.
-    pub set: usize,
-    /// Offset of a [`TransformParam`] in the parameter block. `None` is the identity.
-    pub transform: Option<u32>,
-}
-
-impl UvMap {
-    #[inline(always)]
-    pub(super) fn apply<D: Domain>(&self, d: D, surface: &Surface<D>) -> [D::F; 2] {
-        let [u, v] = surface.uv[self.set];
-        match self.transform {
-            None => [u, v],
-            Some(offset) => {
-                let first = surface.params + d.uint(offset);
-                let transform = TransformParam::load_at(d, Buffer::Params, first);
-                let apply = |row: Vec3<D::F>| d.fma(row.x, u, d.fma(row.y, v, row.z));
-                [apply(transform.u), apply(transform.v)]
-            }
-        }
-    }
-}
 
 /// An image texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,11 +44,13 @@ impl<U: Wrapping, V: Wrapping, F: Filtering, T: TexelFormat> Image<U, V, F, T> {
         lerp: impl Fn(S, S, D::F) -> S,
     ) -> S {
         let slot = surface.params + d.uint(self.slot);
+        let image = ImageParam::load_at(d, Buffer::Params, slot);
         let ImageParam {
             first,
             width,
             height,
-        } = ImageParam::load_at(d, Buffer::Params, slot);
+            ..
+        } = self.filter.level(d, image, &self.uv, surface);
         let (columns, rows) = (d.to_real(width), d.to_real(height));
         let [u, v] = self.uv.apply(d, surface);
         let texel = |x: D::F, y: D::F| {

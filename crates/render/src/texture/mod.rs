@@ -11,15 +11,17 @@ mod image;
 mod params;
 mod srgb;
 mod texel_format;
+mod uv_map;
 mod wrapping;
 
 pub use checkerboard::Checkerboard;
 pub use dispersive::Dispersive;
-pub use filtering::{AnyFilter, Bilinear, Filtering, Nearest};
-pub use image::{Image, UvMap};
+pub use filtering::{AnyFilter, Bilinear, Filtering, Nearest, Trilinear};
+pub use image::Image;
 pub use params::{ColorParam, ImageParam, TransformParam};
 pub use srgb::{srgb_code, srgb_decoded, srgb_table};
-pub use texel_format::{AnyFormat, LinearFloat, LinearRgba8, SrgbRgba8, TexelFormat};
+pub use texel_format::{AnyFormat, LinearFloat, LinearHalf, LinearRgba8, SrgbRgba8, TexelFormat};
+pub use uv_map::UvMap;
 pub use wrapping::{
     AnyWrap, BlackBorder, Clamp, FlatBorder, MirroredRepeat, Repeat, WhiteBorder, Wrapping,
 };

@@ -21,6 +21,9 @@ pub struct SrgbRgba8;
 /// Four linear bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearRgba8;
+/// Four linear `f16`, none of them negative, infinite or NaN.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearHalf;
 /// Four linear `f32`.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearFloat;
@@ -71,6 +74,31 @@ impl TexelFormat for LinearRgba8 {
         unorm(d, d.load(Buffer::Texels, word), channel)
     }
 }
+/// The lower half of a word as a number: exact, and without numbers below the normal ones of `f32`, which GPUs may take for 0.
+#[inline(always)]
+fn half<D: Domain>(d: D, word: D::U) -> D::F {
+    let bits = word & d.uint(0x7fff);
+    let normal = d.from_bits((bits << 13) + d.uint((127 - 15) << 23));
+    let small = d.to_real(bits) * d.lit(1.0 / f64::from(1 << 24));
+    d.select(d.lt_u(bits, d.uint(1 << 10)), small, normal)
+}
+
+impl TexelFormat for LinearHalf {
+    #[inline(always)]
+    fn words(&self) -> u32 {
+        2
+    }
+    #[inline(always)]
+    fn color<D: Domain>(&self, d: D, word: D::U) -> Color<D::F> {
+        let [rg, ba] = [0, 1].map(|k| d.load(Buffer::Texels, word + d.uint(k)));
+        vec3(half(d, rg), half(d, rg >> 16), half(d, ba))
+    }
+    #[inline(always)]
+    fn channel<D: Domain>(&self, d: D, word: D::U, channel: u32) -> D::F {
+        let two = d.load(Buffer::Texels, word + d.uint(channel / 2));
+        half(d, two >> (16 * (channel % 2)))
+    }
+}
 impl TexelFormat for LinearFloat {
     #[inline(always)]
     fn words(&self) -> u32 {
@@ -94,6 +122,8 @@ pub enum AnyFormat {
     SrgbRgba8,
     /// [`LinearRgba8`].
     LinearRgba8,
+    /// [`LinearHalf`].
+    LinearHalf,
     /// [`LinearFloat`].
     LinearFloat,
 }
@@ -104,6 +134,7 @@ impl TexelFormat for AnyFormat {
         match self {
             Self::SrgbRgba8 => SrgbRgba8.words(),
             Self::LinearRgba8 => LinearRgba8.words(),
+            Self::LinearHalf => LinearHalf.words(),
             Self::LinearFloat => LinearFloat.words(),
         }
     }
@@ -112,6 +143,7 @@ impl TexelFormat for AnyFormat {
         match self {
             Self::SrgbRgba8 => SrgbRgba8.color(d, word),
             Self::LinearRgba8 => LinearRgba8.color(d, word),
+            Self::LinearHalf => LinearHalf.color(d, word),
             Self::LinearFloat => LinearFloat.color(d, word),
         }
     }
@@ -120,6 +152,7 @@ impl TexelFormat for AnyFormat {
         match self {
             Self::SrgbRgba8 => SrgbRgba8.channel(d, word, channel),
             Self::LinearRgba8 => LinearRgba8.channel(d, word, channel),
+            Self::LinearHalf => LinearHalf.channel(d, word, channel),
             Self::LinearFloat => LinearFloat.channel(d, word, channel),
         }
     }

@@ -54,7 +54,7 @@ fn beyond<D: Domain, B>(d: D, path: &Path<D>, vertex: &Vertex<'_, D, B>, dir: Ve
 
 impl<D: Domain, T: Tracer<D>> Tracer<D> for Absorbing<T> {
     forward!(
-        on_emit, wavelength, on_hit, on_miss, goes_on, layers, cost_map
+        on_emit, wavelength, cone, on_hit, on_miss, goes_on, layers, cost_map
     );
 
     #[inline(always)]

@@ -45,7 +45,9 @@ impl<T, S> Dispersing<T, S> {
 }
 
 impl<D: Domain, T: Tracer<D>, S: Sampler<D>> Tracer<D> for Dispersing<T, S> {
-    forward!(on_emit, arrive, on_hit, on_miss, goes_on, layers, cost_map);
+    forward!(
+        on_emit, cone, arrive, on_hit, on_miss, goes_on, layers, cost_map
+    );
 
     #[inline(always)]
     fn wavelength(&self, d: D, path: &Path<D>) -> Option<D::F> {

@@ -45,7 +45,7 @@ pub struct Layered<T, L> {
 
 impl<D: Domain, T: Tracer<D>, S: LayerSet> Tracer<D> for Layered<T, S> {
     forward!(
-        on_emit, wavelength, arrive, on_hit, on_miss, goes_on, on_shadow, on_bounce, cost_map
+        on_emit, wavelength, cone, arrive, on_hit, on_miss, goes_on, on_shadow, on_bounce, cost_map
     );
 
     #[inline(always)]

@@ -42,6 +42,11 @@ where
     if let Some(wavelength) = tracer.wavelength(d, path) {
         surface.wavelength = wavelength;
     }
+    if material.filters()
+        && let Some(cone) = tracer.cone(d, path)
+    {
+        surface.see_through(d, cone, path.ray.org, material.attributes(), hit.prim);
+    }
     let path = &tracer.arrive(d, path, &surface);
     let shading = material.shade(d, &mut surface, wo);
     let vertex = Vertex {

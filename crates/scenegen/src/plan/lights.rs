@@ -10,7 +10,7 @@ use residual_render::light::{
 };
 use residual_render::program::{ColorNode, LightNode, Program, Source, SourceNode};
 use residual_render::scene_data::SceneData;
-use residual_render::texture::{AnyFormat, srgb_table};
+use residual_render::texture::srgb_table;
 
 use super::geometry::Geometry;
 use super::images::Images;
@@ -326,7 +326,7 @@ impl PlannedLights {
             Reach::Everywhere,
         );
 
-        let texels = images.param(scene, environment.image, AnyFormat::LinearFloat);
+        let texels = images.environment(scene, environment.image);
         let (sin, cos) = environment.rotation.sin_cos();
         let header = EnvironmentHeader {
             width: texels.width,

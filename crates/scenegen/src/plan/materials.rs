@@ -36,7 +36,7 @@ pub(super) fn plan_materials(
         let Some(available) = available else { continue };
         let desc = &scene.materials[material];
         let place = format!("material {:?}", desc.name);
-        let sources = Sources::new(scene, options.binding, available, images, place);
+        let sources = Sources::new(scene, options, available, images, place);
         let encloses = encloses_a_body(scene, material);
         let mut builder = Builder {
             sources,

@@ -74,7 +74,7 @@ impl Builder<'_> {
     fn emission(&mut self, desc: &MaterialDesc) -> Option<EmissionNode> {
         let emission = match desc.surface {
             SurfaceDesc::Unlit => self.sources.tinted_color(&desc.emission),
-            _ => self.sources.color(&desc.emission),
+            _ => self.sources.full_color(&desc.emission),
         };
         if is_black(&emission) {
             if desc.emission.factor != [0.0; 3] {
