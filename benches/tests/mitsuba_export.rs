@@ -261,6 +261,7 @@ fn what_has_no_counterpart_is_refused_by_its_name() {
                 outer: 0.5,
             },
             intensity: [1.0; 3],
+            size: 0.0,
         });
     });
     assert!(text.contains("light \"lamp\" is a spot"), "{text}");

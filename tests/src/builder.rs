@@ -46,7 +46,13 @@ impl Builder {
             name: "light".to_owned(),
             kind,
             intensity,
+            size: 0.0,
         });
+    }
+
+    /// Gives the last light a [size](LightDesc::size).
+    pub fn size_of_light(&mut self, size: f32) {
+        self.scene.lights.last_mut().expect("a light").size = size;
     }
 
     /// Adds a camera that looks from one point at another.

@@ -7,11 +7,11 @@ use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{
     AlphaMode, Attenuation, ColorInput, EnvironmentDesc, Filter, MaterialDesc, MeshDesc,
     MetallicRoughness, NormalMap, PhongSurface, Projection, PunctualKind, ScalarInput, Scattering,
-    SceneDesc, SurfaceDesc, TextureUse, Wrap,
+    SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::plan::{
-    Aperture, Binding, Focus, LightPicks, Optics, Plan, PlanOptions, plan,
+    Aperture, Binding, Focus, LightPicks, Optics, Plan, PlanOptions, TextureResolution, plan,
 };
 
 use crate::fixtures::{
@@ -572,6 +572,19 @@ fn textures() -> Vec<Tiny> {
         SRGB.iter().map(swap).collect()
     };
     let wrapped = |wrap| textured(false, [wrap; 2], linear, printed);
+    let mut mipmaps = Tiny::new(
+        "mipmaps",
+        &instead(Effect::BilinearFilter, Effect::Mipmaps),
+        &[],
+        textured(false, REPEAT, Filter::Mipmapped, printed),
+    );
+    mipmaps.options.textures = TextureResolution::Filtered;
+    let mut halves = textured(true, REPEAT, linear, printed);
+    if let Texels::RgbaF32(texels) = &mut halves.images[0].texels {
+        for channel in texels.iter_mut().flatten() {
+            *channel = (*channel * 256.0).round() / 256.0;
+        }
+    }
     vec![
         Tiny::new("texture", &SRGB, &[], with(|_| {})),
         Tiny::new(
@@ -591,6 +604,19 @@ fn textures() -> Vec<Tiny> {
             &instead(Effect::RepeatWrap, Effect::ClampWrap),
             &[],
             wrapped(Wrap::Clamp),
+        ),
+        Tiny::new(
+            "border_wrap",
+            &instead(Effect::RepeatWrap, Effect::BorderWrap),
+            &[],
+            wrapped(Wrap::WhiteBorder),
+        ),
+        mipmaps,
+        Tiny::new(
+            "half_texels",
+            &instead(Effect::SrgbTexels, Effect::HalfTexels),
+            &[],
+            halves,
         ),
         Tiny::new(
             "float_texels",
@@ -903,6 +929,39 @@ fn lights() -> Vec<Tiny> {
             &[Effect::DirectionalLights],
             &point,
             lit(|b| b.light(PunctualKind::Directional { direction }, [1.0, 0.9, 0.8])),
+        ),
+        Tiny::new(
+            "spherical_point",
+            &[Effect::SphericalPointLights],
+            &point,
+            lit(|b| {
+                b.light(PunctualKind::Point { position }, [3.0, 2.5, 2.0]);
+                b.size_of_light(0.3);
+            }),
+        ),
+        Tiny::new(
+            "spherical_spot",
+            &[Effect::SphericalSpotLights],
+            &point,
+            lit(|b| {
+                let kind = PunctualKind::Spot {
+                    position,
+                    direction,
+                    inner: 0.4,
+                    outer: 0.7,
+                };
+                b.light(kind, [3.0, 2.5, 2.0]);
+                b.size_of_light(0.3);
+            }),
+        ),
+        Tiny::new(
+            "sun",
+            &[Effect::Suns],
+            &point,
+            lit(|b| {
+                b.light(PunctualKind::Directional { direction }, [1.0, 0.9, 0.8]);
+                b.size_of_light(0.1);
+            }),
         ),
         Tiny::new("environment", &[Effect::Environment], &point, {
             let mut image = 0;

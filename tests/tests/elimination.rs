@@ -37,11 +37,15 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("Image<", &[Effect::Textures]),
     ("Nearest", &[Effect::NearestFilter]),
     ("Bilinear", &[Effect::BilinearFilter]),
+    ("Trilinear", &[Effect::Mipmaps]),
+    ("filters", &[Effect::Mipmaps]),
     ("Repeat", &[Effect::RepeatWrap]),
     ("MirroredRepeat", &[Effect::MirrorWrap]),
     ("Clamp", &[Effect::ClampWrap]),
+    ("WhiteBorder", &[Effect::BorderWrap]),
     ("SrgbRgba8", &[Effect::SrgbTexels]),
     ("LinearRgba8", &[Effect::LinearTexels]),
+    ("LinearHalf", &[Effect::HalfTexels]),
     ("LinearFloat", &[Effect::FloatTexels]),
     ("Checkerboard {", &[Effect::ProceduralTextures]),
     ("transform: Some", &[Effect::TextureTransforms]),
@@ -80,6 +84,9 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("(Point, ", &[Effect::PointLights]),
     ("(Spot, ", &[Effect::SpotLights]),
     ("(Directional, ", &[Effect::DirectionalLights]),
+    ("(SphericalPoint, ", &[Effect::SphericalPointLights]),
+    ("(SphericalSpot, ", &[Effect::SphericalSpotLights]),
+    ("(Sun, ", &[Effect::Suns]),
     ("(Environment, ", &[Effect::Environment]),
     ("Perspective", &[Effect::PerspectiveCamera]),
     ("ThinLens", &[Effect::DepthOfField]),
@@ -89,9 +96,18 @@ const WORDS: &[(&str, &[Effect])] = &[
 
 /// Source files of renderers, and the effects that alone call for them.
 const SOURCES: &[(&str, &[Effect])] = &[
+    ("render/src/texture/image.rs", &[Effect::Textures]),
     // Environments are images, too.
     (
-        "render/src/texture/image.rs",
+        "render/src/texture/wrapping.rs",
+        &[Effect::Textures, Effect::Environment],
+    ),
+    (
+        "render/src/texture/filtering.rs",
+        &[Effect::Textures, Effect::Environment],
+    ),
+    (
+        "render/src/texture/texel_format.rs",
         &[Effect::Textures, Effect::Environment],
     ),
     (
@@ -134,14 +150,25 @@ const SOURCES: &[(&str, &[Effect])] = &[
     ),
     ("render/src/tracer/dispersing.rs", &[Effect::Dispersion]),
     ("render/src/light/area.rs", &[Effect::EmittingSurfaces]),
+    ("render/src/light/sized.rs", SIZED_LIGHTS),
     (
         "render/src/light/punctual.rs",
         &[
             Effect::PointLights,
             Effect::SpotLights,
             Effect::DirectionalLights,
+            Effect::SphericalPointLights,
+            Effect::SphericalSpotLights,
+            Effect::Suns,
         ],
     ),
+];
+
+/// What lights with a size are called for by.
+const SIZED_LIGHTS: &[Effect] = &[
+    Effect::SphericalPointLights,
+    Effect::SphericalSpotLights,
+    Effect::Suns,
 ];
 
 /// Files that every renderer may contain.

@@ -35,6 +35,7 @@ macro_rules! goldens {
 goldens! {
     alpha_blending
     alpha_mask
+    border_wrap
     brushed_metal
     bumpy_coat
     car_paint
@@ -53,6 +54,7 @@ goldens! {
     float_texels
     dielectric_coat
     frosted_glass
+    half_texels
     independent_sampler
     light_tree
     linear_texels
@@ -61,6 +63,7 @@ goldens! {
     metal
     milk
     mirror
+    mipmaps
     mirror_wrap
     mixed_metal
     nearest_filter
@@ -77,7 +80,10 @@ goldens! {
     soap_film
     solid_glass
     specular_texture
+    spherical_point
+    spherical_spot
     spot_light
+    sun
     texture
     texture_transform
     textured_emission

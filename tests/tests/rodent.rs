@@ -86,6 +86,7 @@ fn specular_maps_colour_the_highlight_only() {
         name: "lamp".to_owned(),
         kind: PunctualKind::Point { position },
         intensity: [5.0; 3],
+        size: 0.0,
     });
     let [r, g, b] = shown(&planned(&scene, Binding::Structure));
     assert!(r > 1.2 * g && g == b && g > 0.0, "{r} {g} {b}");

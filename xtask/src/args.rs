@@ -12,7 +12,7 @@ use residual_scenegen::plan::{Aperture, Focus, Optics};
 
 use crate::choices::{
     CullingArg, DeviceArg, LightsArg, MappingArg, MisArg, SamplerArg, SpecializeArg, StudioArg,
-    TargetArg, TierArg, TracerArg, ViewArg,
+    TargetArg, TexturesArg, TierArg, TracerArg, ViewArg,
 };
 use crate::compare::args::CompareArgs;
 
@@ -72,6 +72,12 @@ pub(crate) struct SceneArgs {
     /// Turn of the environment about +Y
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "env", allow_negative_numbers = true, value_parser = finite::<f32>)]
     pub(crate) env_rotate: f32,
+    /// Angle of the disc that a directional light of the scene is in the sky, from edge to edge: 0.526 is the sun's
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = sun_angle)]
+    pub(crate) sun_angle: Option<f32>,
+    /// Radius of the spheres that point and spot lights of the scene are, in units of the scene
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = non_negative)]
+    pub(crate) light_radius: Option<f32>,
     /// When a studio lights the scene: soft boxes before grey walls
     #[arg(long, value_enum, default_value_t = StudioArg::Auto)]
     pub(crate) studio: StudioArg,
@@ -141,6 +147,9 @@ pub(crate) struct SceneArgs {
     /// Where random numbers come from
     #[arg(long, value_enum, default_value_t = SamplerArg::Sobol)]
     pub(crate) sampler: SamplerArg,
+    /// At which resolution colours are read from textures whose samplers ask for mipmaps
+    #[arg(long, value_enum, default_value_t = TexturesArg::Full)]
+    pub(crate) textures: TexturesArg,
     /// How often each light is picked
     #[arg(long, value_enum, default_value_t = LightsArg::Auto)]
     pub(crate) lights: LightsArg,
@@ -335,6 +344,14 @@ fn non_negative(text: &str) -> Result<f32, String> {
     }
 }
 
+fn sun_angle(text: &str) -> Result<f32, String> {
+    let degrees: f32 = finite(text)?;
+    match (0.0..=180.0).contains(&degrees) {
+        true => Ok(degrees),
+        false => Err("expected an angle from 0 to 180 degrees".to_owned()),
+    }
+}
+
 fn field_of_view(text: &str) -> Result<f32, String> {
     let degrees: f32 = finite(text)?;
     let fits = degrees > 0.0 && degrees < 180.0;
@@ -363,5 +380,6 @@ mod tests {
             "0,0,-0".parse::<Direction>().is_err() && "0,1e-300,0".parse::<Direction>().is_ok()
         );
         assert!(field_of_view("180").is_err());
+        assert!(sun_angle("180").is_ok() && sun_angle("-1").is_err() && sun_angle("181").is_err());
     }
 }

@@ -30,6 +30,14 @@ pub(crate) enum SamplerArg {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TexturesArg {
+    /// At that of their images
+    Full,
+    /// At that of what is seen through a pixel, or by way of another surface
+    Filtered,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum LightsArg {
     /// From a tree where there are many and it pays, mixed elsewhere
     Auto,

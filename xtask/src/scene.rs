@@ -13,11 +13,14 @@ use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{
-    Binding, BodyRule, CameraChoice, CullingRule, LightPicks, Plan, PlanOptions, View, plan,
+    Binding, BodyRule, CameraChoice, CullingRule, LightPicks, Plan, PlanOptions, TextureResolution,
+    View, plan,
 };
 
 use crate::args::SceneArgs;
-use crate::choices::{CullingArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TracerArg};
+use crate::choices::{
+    CullingArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TexturesArg, TracerArg,
+};
 
 /// What statistics say about a planned scene.
 pub(crate) fn summary(plan: &Plan) -> SceneSummary {
@@ -67,6 +70,7 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             strict: args.strict,
         },
     )?;
+    set_light_sizes(args, &mut scene);
     let needs_light = matches!(args.tracer, TracerArg::Path) && !scene.instances.is_empty();
     match args.studio {
         StudioArg::Auto if needs_light && scene.is_unlit() => {
@@ -114,6 +118,10 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             LightsArg::Uniform => LightPicks::Uniform,
             LightsArg::Tree => LightPicks::Tree,
         },
+        textures: match args.textures {
+            TexturesArg::Full => TextureResolution::Full,
+            TexturesArg::Filtered => TextureResolution::Filtered,
+        },
         sampler: match args.sampler {
             SamplerArg::Sobol => AnySampler::Sobol,
             SamplerArg::Independent => AnySampler::Independent,
@@ -124,6 +132,33 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
         flat_normals: false,
     };
     Ok((scene, options))
+}
+
+/// Gives the scene's lights the sizes that are asked for, and warns where there are no such lights.
+fn set_light_sizes(args: &SceneArgs, scene: &mut SceneDesc) {
+    let has = |scene: &SceneDesc, directional: bool| {
+        let mut lights = scene.lights.iter();
+        lights.any(|light| light.is_directional() == directional)
+    };
+    let unused = |option: &str, lights: &str| Warning {
+        kind: WarningKind::Unused,
+        place: option.to_owned(),
+        message: format!("the scene has no {lights}"),
+    };
+    if let Some(degrees) = args.sun_angle {
+        if !has(scene, true) {
+            let warning = unused("--sun-angle", "directional light");
+            scene.warnings.push(warning);
+        }
+        scene.set_sun_angle(degrees.to_radians());
+    }
+    if let Some(radius) = args.light_radius {
+        if !has(scene, false) {
+            let warning = unused("--light-radius", "point or spot light");
+            scene.warnings.push(warning);
+        }
+        scene.set_light_radius(radius);
+    }
 }
 
 /// Reads and plans the scene; warnings go to standard error.

@@ -115,6 +115,11 @@ fn emitters(scene: &SceneDesc, plan: &Plan) -> Result<Vec<Element>> {
 }
 
 fn punctual(light: &LightDesc) -> Result<Element> {
+    ensure!(
+        light.size == 0.0,
+        "light {:?} has a size, and Mitsuba would show it; it is not exported",
+        light.name
+    );
     Ok(match light.kind {
         PunctualKind::Point { position } => Element::plugin("emitter", "point")
             .triple("point", "position", position.to_array())

@@ -41,6 +41,7 @@ pub(super) fn image_param(image: u32) -> ImageParam {
         first: image * SIDE * SIDE,
         width: SIDE,
         height: SIDE,
+        levels: 0,
     }
 }
 

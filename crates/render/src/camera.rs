@@ -1,6 +1,6 @@
 //! Cameras.
 
-use crate::domain::Domain;
+use crate::domain::{Buffer, Domain};
 use crate::math::Vec3;
 use crate::math::elementary::sincos_turns;
 use crate::math::warp::disc;
@@ -51,6 +51,33 @@ record! {
             focus_distance: real,
         }
     }
+}
+
+record! {
+    /// What of the scene a camera ray stands for, behind the camera's record. Only where textures are filtered.
+    pub struct PixelConeRecord {
+        row {
+            /// What half the film's height is multiplied with to give half the height of what is seen where rays begin.
+            parallel: real,
+            /// The same a unit of length farther on, less that.
+            spread: real,
+            /// Half the angle between the image's top and bottom, of cameras whose film does not say it, in radians.
+            turn: real,
+        }
+    }
+}
+
+/// The width of a pixel of an image of so many rows where camera rays begin, and by how much it grows on a unit of length.
+#[inline(always)]
+pub fn pixel_cone<D: Domain>(d: D, rows: D::F) -> [D::F; 2] {
+    let camera = CameraRecord::uniform(d);
+    let cone = PixelConeRecord::uniform_at(d, Buffer::Camera, CameraRecord::WORDS);
+    let half_height = camera.up.length(d);
+    let pixel = d.lit(2.0) / rows;
+    [
+        half_height * cone.parallel * pixel,
+        d.fma(half_height, cone.spread, cone.turn) * pixel,
+    ]
 }
 
 impl<D: Domain> CameraRecord<D> {

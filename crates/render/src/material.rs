@@ -31,6 +31,12 @@ pub trait Material<D: Domain> {
         false
     }
 
+    /// Whether textures are filtered over what a ray stands for.
+    #[inline(always)]
+    fn filters(&self) -> bool {
+        false
+    }
+
     /// Evaluates the inputs at a point, seen from the unit direction `wo`; may replace the shading normal.
     fn shade<'a>(
         &'a self,

@@ -7,12 +7,13 @@ use residual_render::bsdf::{
 use residual_render::domain::{Buffer, Domain, Lanes};
 use residual_render::light::{
     self, Area, AreaRecord, Directional, Environment, LightKind, LightSample, Point,
-    PunctualRecord, Spot,
+    PunctualRecord, SphericalPoint, SphericalSpot, Spot, Sun,
 };
 use residual_render::math::vec3::vec3;
+use residual_render::record::BufferRecord;
 use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{Attributes, Surface, SurfaceHit};
+use residual_render::surface::{Attributes, Footprint, Surface, SurfaceHit};
 use residual_render::texture::{
     AnyFilter, AnyFormat, AnyWrap, Checkerboard, ColorSource, Const, Image, ImageParam,
     ScalarSource, TransformParam, UvMap,
@@ -142,7 +143,16 @@ macro_rules! light_formula {
     )*};
 }
 
-light_formula!(Area<Const<[f32; 3]>>, Point, Spot, Directional, Environment);
+light_formula!(
+    Area<Const<[f32; 3]>>,
+    Point,
+    Spot,
+    Directional,
+    SphericalPoint,
+    SphericalSpot,
+    Sun,
+    Environment
+);
 
 #[test]
 fn lights_agree() {
@@ -166,6 +176,15 @@ fn lights_agree() {
     check("point", &data, &Light(Point), &inputs);
     check("spot", &data, &Light(Spot), &inputs);
     check("directional", &data, &Light(Directional), &inputs);
+    // The floor, on which the points lie, is without and within.
+    for radius in [0.01, 0.9, 1.2] {
+        set_lights(&mut data, &[spot.with_radius(radius)], &[1.0]);
+        check("sphere", &data, &Light(SphericalPoint), &inputs);
+        check("spot sphere", &data, &Light(SphericalSpot), &inputs);
+    }
+    let sun = PunctualRecord::sun(0, [0.6, 0.0, 0.8], [5.0, 4.0, 3.0], 0.01);
+    set_lights(&mut data, &[sun], &[1.0]);
+    check("sun", &data, &Light(Sun), &inputs);
     let mut rng = Rng::new(47);
     let texels: Vec<_> = (0..21).map(|_| rng.unit3()).collect();
     set_environment(&mut data, 7, &texels, 0.7);
@@ -178,6 +197,12 @@ impl Formula for Texture {
     fn run<D: Lanes>(&self, d: D, x: &[D::U]) -> Vec<D::U> {
         let mut surface = floor(d);
         surface.uv[0] = [d.from_bits(x[0]), d.from_bits(x[1])];
+        // Of all levels.
+        surface.footprint = Footprint {
+            width: d.max(d.min(d.abs(surface.uv[0][0]), d.lit(8.0)), d.lit(0.0)),
+            uv_areas: [d.lit(0.02); 2],
+            random: d.lit(0.4),
+        };
         let scalar = self.0.scalar(d, &surface);
         words(
             d,
@@ -199,16 +224,39 @@ fn textures_agree() {
             first: 0,
             width: 5,
             height: 7,
+            levels: 4 * 35,
         },
     );
+    let sizes = [[5, 7], [2, 3], [1, 1]];
+    for (first, [width, height]) in [0, 40, 70].into_iter().zip(sizes) {
+        let level = ImageParam {
+            first,
+            width,
+            height,
+            levels: 4 * 35,
+        };
+        level.append_to(data.buffer_mut(Buffer::Texels));
+    }
     let moderate = reals(49, |r| {
         [r.range(-5.0, 5.0) as f32, r.range(-5.0, 5.0) as f32]
     });
-    for wrap in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
-        for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
+    for wrap in [
+        AnyWrap::Repeat,
+        AnyWrap::MirroredRepeat,
+        AnyWrap::Clamp,
+        AnyWrap::WhiteBorder,
+        AnyWrap::BlackBorder,
+        AnyWrap::FlatBorder,
+    ] {
+        for filter in [
+            AnyFilter::Nearest,
+            AnyFilter::Bilinear,
+            AnyFilter::Trilinear,
+        ] {
             for format in [
                 AnyFormat::SrgbRgba8,
                 AnyFormat::LinearRgba8,
+                AnyFormat::LinearHalf,
                 AnyFormat::LinearFloat,
             ] {
                 let uv = UvMap {

@@ -19,5 +19,6 @@ mod sampler;
 mod spawn;
 mod spectrum;
 mod support;
+mod texture_levels;
 mod textures;
 mod vectors;

@@ -3,12 +3,12 @@
 use residual_render::texture::srgb_table;
 
 use crate::desc::{
-    AlphaMode, ColorInput, Filter, MaterialDesc, PhongSurface, PunctualKind, ScalarInput,
-    SceneDesc, SurfaceDesc, Texels, TextureUse,
+    AlphaMode, ColorInput, Filter, LightDesc, MaterialDesc, PhongSurface, PunctualKind,
+    ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse,
 };
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
-use crate::plan::{BodyRule, CullingRule, LightPicks, Optics, PlanOptions};
+use crate::plan::{BodyRule, CullingRule, LightPicks, Optics, PlanOptions, TextureResolution};
 use crate::sixteen_bits;
 
 /// How an effect is taken out of a scene, in words; `None` for those without which there is no picture, or which
@@ -30,6 +30,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::Textures => "their mean values; alpha, normal maps and emission stay",
         Effect::ProceduralTextures => "the mean of their colours",
         Effect::BilinearFilter => "the nearest texel",
+        Effect::Mipmaps => "the full resolution",
         Effect::TextureTransforms => "coordinates as they are",
         Effect::VertexColors => "white",
         Effect::SmoothNormals => "flat triangles",
@@ -39,6 +40,8 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::EmittingSurfaces => "dark",
         Effect::TexturedEmission => "its mean",
         Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => "off",
+        Effect::SphericalPointLights | Effect::SphericalSpotLights => "without a radius",
+        Effect::Suns => "without an angle",
         Effect::Environment => "black",
         Effect::DepthOfField => "a pinhole",
         Effect::LightTree => "picked from a table",
@@ -48,8 +51,10 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         | Effect::RepeatWrap
         | Effect::MirrorWrap
         | Effect::ClampWrap
+        | Effect::BorderWrap
         | Effect::SrgbTexels
         | Effect::LinearTexels
+        | Effect::HalfTexels
         | Effect::FloatTexels
         | Effect::SecondUvSet
         | Effect::PerspectiveCamera
@@ -72,20 +77,19 @@ pub fn without(
             let textures = scene.textures.iter_mut();
             textures.for_each(|texture| texture.filter = Filter::Nearest);
         }
+        Effect::Mipmaps => options.textures = TextureResolution::Full,
         Effect::VertexColors => scene.meshes.iter_mut().for_each(|mesh| mesh.colors = None),
         Effect::SmoothNormals => options.flat_normals = true,
         Effect::BackFaceCulling => options.culling = CullingRule::None,
         Effect::NestedBodies => options.bodies = BodyRule::Beside,
         Effect::LightTree => options.light_picks = LightPicks::Mixed,
-        Effect::PointLights => scene
-            .lights
-            .retain(|light| !matches!(light.kind, PunctualKind::Point { .. })),
-        Effect::SpotLights => scene
-            .lights
-            .retain(|light| !matches!(light.kind, PunctualKind::Spot { .. })),
-        Effect::DirectionalLights => scene
-            .lights
-            .retain(|light| !matches!(light.kind, PunctualKind::Directional { .. })),
+        Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => {
+            let lights = &mut scene.lights;
+            lights.retain(|light| light.size > 0.0 || light_effect(light) != effect);
+        }
+        Effect::SphericalPointLights => take_sizes(Effect::PointLights, &mut scene),
+        Effect::SphericalSpotLights => take_sizes(Effect::SpotLights, &mut scene),
+        Effect::Suns => take_sizes(Effect::DirectionalLights, &mut scene),
         Effect::Environment => scene.environment = None,
         Effect::DepthOfField => options.optics = Optics::Projection,
         _ => {
@@ -95,6 +99,23 @@ pub fn without(
         }
     }
     Some((scene, options))
+}
+
+/// What a light without a size calls for.
+fn light_effect(light: &LightDesc) -> Effect {
+    match light.kind {
+        PunctualKind::Point { .. } => Effect::PointLights,
+        PunctualKind::Spot { .. } => Effect::SpotLights,
+        PunctualKind::Directional { .. } => Effect::DirectionalLights,
+    }
+}
+
+/// Takes the size of the lights that would call for an effect without it.
+fn take_sizes(effect: Effect, scene: &mut SceneDesc) {
+    let lights = scene.lights.iter_mut();
+    for light in lights.filter(|light| light_effect(light) == effect) {
+        light.size = 0.0;
+    }
 }
 
 /// Takes an effect out of a material.

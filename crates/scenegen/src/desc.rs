@@ -69,6 +69,8 @@ pub enum WarningKind {
     NoCamera,
     /// A mesh that nobody could see is left out.
     Invisible,
+    /// The user asked for something that the scene has no use for.
+    Unused,
 }
 
 /// Something of the file that the image will lack or show differently.
@@ -114,8 +116,12 @@ pub enum Wrap {
     Repeat,
     /// Tiles, every other one mirrored.
     Mirror,
-    /// The border texel goes on.
+    /// The texels at the edge go on.
     Clamp,
+    /// The image is there once, and white around it: there, factors count alone. Around a normal map, normals are the mesh's.
+    WhiteBorder,
+    /// The image is there once, and black around it. Around a normal map, normals are the mesh's.
+    BlackBorder,
 }
 
 /// How texels are combined.
@@ -126,6 +132,8 @@ pub enum Filter {
     /// Bilinear.
     #[default]
     Linear,
+    /// Bilinear, and where texels are smaller than what is seen of the surface, as if they were as large: by mipmaps.
+    Mipmapped,
 }
 
 /// An image with a sampler.
@@ -135,7 +143,7 @@ pub struct TextureDesc {
     pub image: usize,
     /// Along u and v.
     pub wrap: [Wrap; 2],
-    /// Magnification filter (there is no minification filter yet).
+    /// How texels are combined.
     pub filter: Filter,
 }
 
@@ -262,6 +270,9 @@ pub struct LightDesc {
     /// Colour × intensity: W/(sr·m²)-like photometric units are taken as radiometric, one for one.
     /// Radiant intensity for point and spot, irradiance at normal incidence for directional.
     pub intensity: [f32; 3],
+    /// Radius of a point or spot light, in units of the scene; angular diameter of a directional one, in radians, up to π.
+    /// 0 of lights without a size, as those of files are.
+    pub size: f32,
 }
 
 /// Kinds of punctual lights.

@@ -308,6 +308,16 @@ fn check_light(i: usize, light: &LightDesc) -> Check {
         .iter()
         .all(|value| value.is_finite() && *value >= 0.0);
     require(is_valid, place, "has a negative or non-finite intensity")?;
+    let largest = match light.is_directional() {
+        true => std::f32::consts::PI,
+        false => f32::MAX,
+    };
+    let has_size = light.size >= 0.0 && light.size <= largest;
+    require(
+        has_size,
+        place,
+        "has a negative or non-finite size, or an angle above π",
+    )?;
     match light.kind {
         PunctualKind::Point { position } => {
             require(position.is_finite(), place, "has a non-finite position")

@@ -276,6 +276,7 @@ fn wrap_effect(wrap: AnyWrap) -> Effect {
         AnyWrap::Repeat => Effect::RepeatWrap,
         AnyWrap::MirroredRepeat => Effect::MirrorWrap,
         AnyWrap::Clamp => Effect::ClampWrap,
+        AnyWrap::WhiteBorder | AnyWrap::BlackBorder | AnyWrap::FlatBorder => Effect::BorderWrap,
     }
 }
 
@@ -283,6 +284,7 @@ fn filter_effect(filter: AnyFilter) -> Effect {
     match filter {
         AnyFilter::Nearest => Effect::NearestFilter,
         AnyFilter::Bilinear => Effect::BilinearFilter,
+        AnyFilter::Trilinear => Effect::Mipmaps,
     }
 }
 
@@ -290,6 +292,7 @@ fn format_effect(format: AnyFormat) -> Effect {
     match format {
         AnyFormat::SrgbRgba8 => Effect::SrgbTexels,
         AnyFormat::LinearRgba8 => Effect::LinearTexels,
+        AnyFormat::LinearHalf => Effect::HalfTexels,
         AnyFormat::LinearFloat => Effect::FloatTexels,
     }
 }
@@ -300,6 +303,9 @@ fn light_effect(light: &LightNode) -> Effect {
         LightNode::Point => Effect::PointLights,
         LightNode::Spot => Effect::SpotLights,
         LightNode::Directional => Effect::DirectionalLights,
+        LightNode::SphericalPoint => Effect::SphericalPointLights,
+        LightNode::SphericalSpot => Effect::SphericalSpotLights,
+        LightNode::Sun => Effect::Suns,
         LightNode::Environment => Effect::Environment,
     }
 }

@@ -15,7 +15,7 @@ fn texture_options_do_not_hide_the_file() {
         texture.transform,
         Some([[2., 0., 0.5], [0., 4., 1. - 4. - 0.25]])
     );
-    assert_eq!(scene.textures[texture.texture].wrap, [Wrap::Clamp; 2]);
+    assert_eq!(scene.textures[texture.texture].wrap, [Wrap::WhiteBorder; 2]);
     assert_eq!(red(&scene, texture.texture), 0);
     assert!(warns(&scene, "a.mtl", "-mm of map_kd is ignored"));
     assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
@@ -104,6 +104,48 @@ fn options_in_capitals_are_options() {
     assert_eq!(bumpy.normal_map.as_ref().unwrap().scale, 0.5);
     let texture = phong(&bumpy).diffuse.texture.clone().unwrap();
     assert!(texture.transform.is_some());
-    assert_eq!(scene.textures[texture.texture].wrap, [Wrap::Clamp; 2]);
+    assert_eq!(scene.textures[texture.texture].wrap, [Wrap::WhiteBorder; 2]);
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+/// Around an image that is there once, the material is what it is without the image.
+#[test]
+fn around_stamps_there_is_the_material() {
+    let wrap = |statements: &str, input: fn(&SceneDesc) -> usize| {
+        let (_, scene) = material(statements);
+        scene.textures[input(&scene)].wrap
+    };
+    let diffuse = |scene: &SceneDesc| {
+        phong(&scene.materials[0])
+            .diffuse
+            .texture
+            .clone()
+            .unwrap()
+            .texture
+    };
+    let emission = |scene: &SceneDesc| scene.materials[0].emission.texture.clone().unwrap().texture;
+    let alpha = |scene: &SceneDesc| scene.materials[0].alpha.texture.clone().unwrap().0.texture;
+    for (statements, input, expected) in [
+        (
+            "Kd 0.5 0.5 0.5\nmap_Kd -clamp on kd.png",
+            diffuse as fn(&SceneDesc) -> usize,
+            Wrap::WhiteBorder,
+        ),
+        (
+            "Kd 0 0 0\nmap_Kd -clamp on kd.png",
+            diffuse,
+            Wrap::BlackBorder,
+        ),
+        ("map_Ke -clamp on kd.png", emission, Wrap::BlackBorder),
+        (
+            "Ke 2 2 2\nmap_Ke -clamp on kd.png",
+            emission,
+            Wrap::WhiteBorder,
+        ),
+        ("map_Ke -clamp off kd.png", emission, Wrap::Repeat),
+        ("map_d -clamp on kd.png", alpha, Wrap::WhiteBorder),
+        ("d 0\nmap_d -clamp on kd.png", alpha, Wrap::BlackBorder),
+    ] {
+        assert_eq!(wrap(statements, input), [expected; 2], "{statements}");
+    }
 }

@@ -89,6 +89,16 @@ fn violations_are_found_and_placed() {
                 name: String::new(),
                 kind,
                 intensity: [1.0; 3],
+                size: 0.0,
+            });
+        }),
+        ("lights[0]", |scene| {
+            let kind = PunctualKind::Directional { direction: Vec3::Z };
+            scene.lights.push(LightDesc {
+                name: String::new(),
+                kind,
+                intensity: [1.0; 3],
+                size: 3.2,
             });
         }),
     ];

@@ -126,8 +126,8 @@ fn path(tape: &Tape) -> Path<Record<'_>> {
 fn settings(tape: &Tape) -> Settings<Record<'_>> {
     let d = Record::new(tape);
     Settings {
-        // These matter where a path begins.
-        image: [d.lit(1.0); 2],
+        // The width and the seed matter where a path begins.
+        image: [d.lit(1.0), tape.real("height")],
         seed: d.uint(0),
         max_depth: tape.word("max_depth"),
         roulette_from: tape.word("roulette_from"),

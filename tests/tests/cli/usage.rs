@@ -43,6 +43,8 @@ fn bad_usage_ends_in_status_2() {
         ],
         &["render", "triangle.obj", "--aperture", "f/2", "--panorama"],
         &["render", "triangle.obj", "--panorama", "--fov", "40"],
+        &["render", "triangle.obj", "--sun-angle", "181"],
+        &["render", "triangle.obj", "--light-radius", "-1"],
         &["render", "triangle.obj", "--env-strength", "2"],
         &["render", "triangle.obj", "--tier", "fastest"],
         &["inspect"],

@@ -266,6 +266,7 @@ impl Recording<'_> {
             "max_depth" => [self.options.max_depth; 3],
             "roulette_from" => [self.options.roulette_from; 3],
             "reach" => [self.options.reach.to_bits(); 3],
+            "height" => [(self.options.image[1] as f32).to_bits(); 3],
             other => unreachable!("{other}"),
         })
     }

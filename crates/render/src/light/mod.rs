@@ -11,6 +11,7 @@ mod pick;
 mod punctual;
 #[cfg(test)]
 mod record_tests;
+mod sized;
 mod tree;
 
 pub use area::{Area, AreaRecord};
@@ -20,6 +21,7 @@ pub use pick::{
     LIGHT_WORDS, LightRecord, Pick, PickHeader, pick, pick_probability, push_light, set_picks,
 };
 pub use punctual::{Directional, Point, PunctualRecord, Spot, versine};
+pub use sized::{SphericalPoint, SphericalSpot, Sun};
 pub use tree::{ClusterRecord, EVERYWHERE, LEAF, LightTree, LightTreeHeader, set_light_tree};
 
 use crate::domain::{Bundle, Domain};
@@ -36,7 +38,7 @@ pub struct LightSample<D: Domain> {
     pub position: Vec3<D::F>,
     /// It comes from infinitely far away.
     pub infinite: D::M,
-    /// Arriving radiance; for delta lights, irradiance at normal incidence.
+    /// Arriving radiance; for delta lights, radiance over density, which is irradiance at normal incidence of a light without a size.
     pub radiance: Color<D::F>,
     /// Density per steradian; 1 for delta lights.
     pub pdf: D::F,

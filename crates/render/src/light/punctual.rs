@@ -1,4 +1,4 @@
-//! Point, spot and directional lights (KHR_lights_punctual).
+//! Point, spot and directional lights without a size (KHR_lights_punctual), and the record that those [with a size](super::sized) share.
 //!
 //! A spot's intensity falls off with `clamp((cos − cos outer) / (cos inner − cos outer))²`, as the extension recommends.
 //! Cosines of small angles are 1 in 32 bits; so the formula is written in versines, 1 − cos θ = |a + b|²/2 of unit vectors
@@ -20,7 +20,7 @@ pub struct Spot;
 pub struct Directional;
 
 record! {
-    /// A light without extent.
+    /// A point, spot or directional light.
     pub struct PunctualRecord {
         row {
             /// Index of its kind in the scene's list of kinds.
@@ -29,15 +29,15 @@ record! {
             position: vector,
         }
         row {
-            /// Radiant intensity; of a directional light, irradiance at normal incidence.
+            /// Radiant intensity; of a directional light, irradiance at normal incidence; of a sun, what a sample brings.
             intensity: vector,
             /// Of a spot: what a versine's difference to that of the edge is multiplied with.
             scale: real,
         }
         row {
-            /// Of a spot: the unit direction in which it shines.
+            /// Of a spot: the direction in which it shines, a unit vector; of a sphere, as long as its radius.
             axis: vector,
-            /// Of a spot: the versine of the half-angle at which it ends.
+            /// Of a spot: the versine of the half-angle at which it ends; of a sun: that of its angular radius.
             edge: real,
         }
     }
@@ -75,6 +75,30 @@ impl PunctualRecord {
             ..Self::new(kind, position, intensity)
         }
     }
+
+    /// A sphere of this radius, greater than zero, instead of a point or spot light.
+    pub fn with_radius(self, radius: f32) -> Self {
+        let axis = match self.axis.to_array() {
+            [0.0, 0.0, 0.0] => [0.0, 0.0, 1.0],
+            axis => axis,
+        };
+        Self {
+            axis: axis.map(|component| component * radius).into(),
+            ..self
+        }
+    }
+
+    /// A disc of the sky around the unit vector `position`, of which `diameter` is seen, in radians, up to π. Whatever the
+    /// diameter, a surface that faces the disc's middle gets the irradiance `intensity`.
+    pub fn sun(kind: u32, position: [f32; 3], intensity: [f32; 3], diameter: f32) -> Self {
+        let edge = versine(0.5 * diameter);
+        // Radiance is irradiance over π·sin² α, and density 1 over 2π·(1 − cos α).
+        let weight = (2.0 / (2.0 - edge)) as f32;
+        Self {
+            edge: edge as f32,
+            ..Self::new(kind, position, intensity.map(|channel| channel * weight))
+        }
+    }
 }
 
 /// 1 − cos of an angle in radians, without cancellation.
@@ -84,7 +108,7 @@ pub fn versine(angle: f32) -> f64 {
 
 impl<D: Domain> PunctualRecord<D> {
     #[inline(always)]
-    fn of_light(d: D, record: D::U) -> Self {
+    pub(super) fn of_light(d: D, record: D::U) -> Self {
         Self::load_at(d, Buffer::Lights, record)
     }
 
@@ -104,6 +128,25 @@ impl<D: Domain> PunctualRecord<D> {
             delta: d.truth(true),
         }
     }
+
+    /// What is left of a sample of a light that shines everywhere, where it shines into the cone of the record around the unit
+    /// vector `axis`.
+    #[inline(always)]
+    pub(super) fn within_cone(
+        &self,
+        d: D,
+        axis: Vec3<D::F>,
+        everywhere: LightSample<D>,
+    ) -> LightSample<D> {
+        let across = axis + everywhere.wi;
+        let versine = across.dot(d, across) * d.lit(0.5);
+        let falloff = (self.edge - versine) * self.scale;
+        let falloff = d.min(d.max(falloff, d.lit(0.0)), d.lit(1.0));
+        LightSample {
+            radiance: everywhere.radiance.scale(falloff * falloff),
+            ..everywhere
+        }
+    }
 }
 
 impl<D: Domain> LightKind<D> for Point {
@@ -117,15 +160,7 @@ impl<D: Domain> LightKind<D> for Spot {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
         let record = PunctualRecord::of_light(d, record);
-        let everywhere = record.arriving_at(d, from);
-        let across = record.axis + everywhere.wi;
-        let versine = across.dot(d, across) * d.lit(0.5);
-        let falloff = (record.edge - versine) * record.scale;
-        let falloff = d.min(d.max(falloff, d.lit(0.0)), d.lit(1.0));
-        LightSample {
-            radiance: everywhere.radiance.scale(falloff * falloff),
-            ..everywhere
-        }
+        record.within_cone(d, record.axis, record.arriving_at(d, from))
     }
 }
 

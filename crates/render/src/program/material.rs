@@ -21,6 +21,7 @@ pub struct BoxedMaterial<'a, D: Domain> {
     tangent: Option<TangentNode>,
     interior: Option<u32>,
     disperses: bool,
+    filters: bool,
     emission: Option<EmissionNode>,
     bsdf: Box<dyn Bsdf<D> + Send + Sync + 'a>,
 }
@@ -46,6 +47,7 @@ impl<'a, D: Domain + 'a> BoxedMaterial<'a, D> {
             tangent: program.tangent,
             interior: program.interior,
             disperses: program.disperses(),
+            filters: program.filters(),
             emission: program.emission,
             bsdf: program.bsdf.boxed(),
         }
@@ -66,6 +68,11 @@ impl<D: Domain> Material<D> for BoxedMaterial<'_, D> {
     #[inline(always)]
     fn disperses(&self) -> bool {
         self.disperses
+    }
+
+    #[inline(always)]
+    fn filters(&self) -> bool {
+        self.filters
     }
 
     #[inline(always)]

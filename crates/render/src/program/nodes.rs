@@ -86,6 +86,9 @@ nodes! {
         Point,
         Spot,
         Directional,
+        SphericalPoint,
+        SphericalSpot,
+        Sun,
         Environment,
     }
 

@@ -7,7 +7,7 @@ use super::nodes::{
 use super::{Program, SourceNode};
 use crate::bsdf::AnyInterface;
 use crate::surface::Attributes;
-use crate::texture::UvMap;
+use crate::texture::{AnyFilter, UvMap};
 
 /// Where the numbers of a source come from in the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,6 +131,14 @@ impl Program {
             matches!(source, SourceNode::Scalar(ScalarNode::Dispersive { .. }))
         };
         sources.into_iter().any(disperses)
+    }
+
+    /// Whether textures are filtered over what a ray stands for.
+    pub fn filters(&self) -> bool {
+        let leaves = self.leaves();
+        let is_filtered =
+            |leaf| matches!(leaf, Leaf::Image(image) if image.filter == AnyFilter::Trilinear);
+        leaves.into_iter().any(is_filtered)
     }
 }
 

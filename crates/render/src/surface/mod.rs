@@ -1,6 +1,7 @@
 //! What is known of the point where a ray met a surface, and how rays leave it again.
 
 mod attributes;
+mod footprint;
 mod offset;
 mod place;
 mod ray;
@@ -10,6 +11,7 @@ mod texels;
 pub use attributes::{
     Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
 };
+pub use footprint::{Cone, Footprint};
 pub use offset::offset_point;
 pub use ray::{PathRay, SurfaceHit};
 pub use texels::{decode_normal, decode_tangent};
@@ -59,6 +61,8 @@ pub struct Surface<D: Domain> {
     pub around: D::F,
     /// The wavelength that the material is evaluated for, in nanometres.
     pub wavelength: D::F,
+    /// What textures are filtered over; a point, unless something [asks for it](Self::see_through).
+    pub footprint: Footprint<D>,
     /// Inputs of a boxed program, evaluated once per point. Unused, and optimised away, in emitted programs.
     pub inputs: [Vec3<D::F>; MAX_INPUTS],
 }
@@ -155,8 +159,24 @@ impl<D: Domain> Surface<D> {
             object: place.triangle.object,
             around: one,
             wavelength: d.lit(D_LINE),
+            footprint: Footprint::point(d),
             inputs: [Vec3::splat(zero); MAX_INPUTS],
         }
+    }
+
+    /// Sees the surface of a hit through a cone around a ray from `org`.
+    #[inline(always)]
+    pub fn see_through(
+        &mut self,
+        d: D,
+        cone: Cone<D>,
+        org: Vec3<D::F>,
+        attributes: Attributes,
+        prim: D::U,
+    ) {
+        let distance = (self.point - org).length(d);
+        let shape = [self.area, self.cos_geometric];
+        self.footprint = Footprint::new(d, cone, distance, shape, attributes, prim);
     }
 
     /// Where the ray `from` → triangle `prim` at barycentric (u, v) would arrive: light sampling's view of a light.

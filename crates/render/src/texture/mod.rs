@@ -6,18 +6,25 @@
 
 mod checkerboard;
 mod dispersive;
+mod filtering;
 mod image;
 mod params;
 mod srgb;
+mod texel_format;
+mod uv_map;
+mod wrapping;
 
 pub use checkerboard::Checkerboard;
 pub use dispersive::Dispersive;
-pub use image::{
-    AnyFilter, AnyFormat, AnyWrap, Bilinear, Clamp, Filtering, Image, LinearFloat, LinearRgba8,
-    MirroredRepeat, Nearest, Repeat, SrgbRgba8, TexelFormat, UvMap, Wrapping,
-};
+pub use filtering::{AnyFilter, Bilinear, Filtering, Nearest, Trilinear};
+pub use image::Image;
 pub use params::{ColorParam, ImageParam, TransformParam};
 pub use srgb::{srgb_code, srgb_decoded, srgb_table};
+pub use texel_format::{AnyFormat, LinearFloat, LinearHalf, LinearRgba8, SrgbRgba8, TexelFormat};
+pub use uv_map::UvMap;
+pub use wrapping::{
+    AnyWrap, BlackBorder, Clamp, FlatBorder, MirroredRepeat, Repeat, WhiteBorder, Wrapping,
+};
 
 use crate::domain::{Buffer, Domain};
 use crate::math::vec3::lit3;

@@ -1,4 +1,4 @@
-//! What textures read from a material's parameter block. A number is a word; the rest are records.
+//! What textures read from a material's parameter block, and of the levels of images. A number is a word; the rest are records.
 
 use crate::record::record;
 
@@ -22,6 +22,9 @@ record! {
             width: word,
             /// Height in texels.
             height: word,
+            /// The first word among the texels of the levels of the image, a record of this kind each, from the image itself
+            /// to the level of one texel. Only where it is read by [`Trilinear`](super::Trilinear).
+            levels: word,
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::domain::Domain;
 use crate::light::LightKinds;
 use crate::math::Color;
 use crate::sampler::Sampler;
-use crate::surface::Surface;
+use crate::surface::{Cone, Surface};
 
 /// Which tracer a renderer has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -168,6 +168,11 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for AnyTracer<D, S> {
     #[inline(always)]
     fn wavelength(&self, d: D, path: &Path<D>) -> Option<D::F> {
         each!(self, tracer => tracer.wavelength(d, path))
+    }
+
+    #[inline(always)]
+    fn cone(&self, d: D, path: &Path<D>) -> Option<Cone<D>> {
+        each!(self, tracer => tracer.cone(d, path))
     }
 
     #[inline(always)]

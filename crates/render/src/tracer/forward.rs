@@ -17,6 +17,12 @@ macro_rules! forward {
             self.tracer.wavelength(d, path)
         }
     };
+    (@ cone) => {
+        #[inline(always)]
+        fn cone(&self, d: D, path: &Path<D>) -> Option<$crate::surface::Cone<D>> {
+            self.tracer.cone(d, path)
+        }
+    };
     (@ crossing) => {
         #[inline(always)]
         fn crossing(

@@ -77,7 +77,9 @@ fn only_at_the_surface<D: Domain, B>(vertex: &Vertex<'_, D, B>) -> Option<D::M> 
 }
 
 impl<D: Domain, T: Tracer<D>, N: Nesting<D>, M: Matter<D>> Tracer<D> for InMedia<T, N, M> {
-    forward!(on_emit, wavelength, on_miss, goes_on, layers, cost_map);
+    forward!(
+        on_emit, wavelength, cone, on_miss, goes_on, layers, cost_map
+    );
 
     #[inline(always)]
     fn crossing(

@@ -45,8 +45,8 @@ pub struct Layered<T, L> {
 
 impl<D: Domain, T: Tracer<D>, S: LayerSet> Tracer<D> for Layered<T, S> {
     forward!(
-        on_emit, wavelength, crossing, passage, on_hit, on_miss, goes_on, on_shadow, on_bounce,
-        cost_map
+        on_emit, wavelength, cone, crossing, passage, on_hit, on_miss, goes_on, on_shadow,
+        on_bounce, cost_map
     );
 
     #[inline(always)]

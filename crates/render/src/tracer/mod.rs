@@ -51,7 +51,7 @@ use crate::layer::Layers;
 use crate::light::LightKinds;
 use crate::math::{Color, Vec3};
 use crate::sampler::SampleKey;
-use crate::surface::{PathRay, Surface};
+use crate::surface::{Cone, PathRay, Surface};
 
 /// A path between two hits.
 #[derive(Clone, Copy)]
@@ -166,6 +166,12 @@ pub trait Tracer<D: Domain> {
     /// The wavelength that materials are evaluated for, in nanometres, if the path has one.
     #[inline(always)]
     fn wavelength(&self, _d: D, _path: &Path<D>) -> Option<D::F> {
+        None
+    }
+
+    /// The cone that the path's ray stands for, where it is known: what textures are filtered over.
+    #[inline(always)]
+    fn cone(&self, _d: D, _path: &Path<D>) -> Option<Cone<D>> {
         None
     }
 

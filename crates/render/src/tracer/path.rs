@@ -1,14 +1,22 @@
 //! The path tracer: unidirectional, with next-event estimation, multiple importance sampling and Russian roulette.
 
-use super::vertex_pairs::{BSDF_DIRECTION, LIGHT, LIGHT_TEXEL_AND_MEDIUM, LOBE_AND_ROULETTE, pair};
+use super::vertex_pairs::{
+    BSDF_DIRECTION, LIGHT, LIGHT_TEXEL_AND_MEDIUM, LOBE_AND_ROULETTE, pair, pair_of_levels,
+};
 use super::{Bounce, Mis, Path, PowerHeuristic, Settings, Shadow, Tracer, Vertex, consistent};
 use crate::bsdf::Bsdf;
-use crate::camera::Camera;
+use crate::camera::{Camera, pixel_cone};
 use crate::domain::Domain;
 use crate::light::{self, LightKinds};
 use crate::math::{Color, Vec3};
 use crate::sampler::Sampler;
-use crate::surface::PathRay;
+use crate::surface::{Cone, PathRay};
+
+/// The cone of a direction that a BSDF proposed has this part of the solid angle that its density stands for: what is seen by way of
+/// a matte wall is seen through cones of 10°.
+const BOUNCE_CONE: f64 = 0.1;
+/// No cone is wider than this, in radians.
+const WIDEST_CONE: f64 = 0.25;
 
 /// The path tracer.
 #[derive(Clone, Copy)]
@@ -36,6 +44,22 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
     fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
         self.settings
             .camera_path(d, camera, &self.sampler, pixel, sample)
+    }
+
+    /// A pixel's, for camera rays and what mirrors reflect of them (which is somewhat farther away than it seems here, since paths do not
+    /// remember their length); beyond other surfaces as narrow as the lobe.
+    #[inline(always)]
+    fn cone(&self, d: D, path: &Path<D>) -> Option<Cone<D>> {
+        let [rows, zero] = [self.settings.image[1], d.lit(0.0)];
+        let [width, angle] = pixel_cone(d, rows);
+        let lobe = d.lit(BOUNCE_CONE) / d.sqrt(d.max(path.pdf, d.lit(1e-30)));
+        let is_straight = d.eq(path.pdf, zero);
+        let [random, _] = pair_of_levels(d, &self.sampler, path);
+        Some(Cone {
+            width: d.select(path.state.is_first(d), width, zero),
+            angle: d.select(is_straight, angle, d.min(lobe, d.lit(WIDEST_CONE))),
+            random,
+        })
     }
 
     /// Emission, weighed against what light sampling makes of it.

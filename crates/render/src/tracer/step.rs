@@ -42,6 +42,11 @@ where
     if let Some(wavelength) = tracer.wavelength(d, path) {
         surface.wavelength = wavelength;
     }
+    if material.filters()
+        && let Some(cone) = tracer.cone(d, path)
+    {
+        surface.see_through(d, cone, path.ray.org, material.attributes(), hit.prim);
+    }
     let crossing = material
         .interior(d, &surface)
         .and_then(|interior| tracer.crossing(d, path, &surface, interior));

@@ -1,7 +1,7 @@
 //! Which pair of random numbers is for what at a vertex of a path. Those of vertex 0, the camera, come first
 //! ([`camera_pairs`]).
 
-use super::{Path, camera_pairs};
+use super::{MAX_DEPTH, Path, camera_pairs};
 use crate::domain::Domain;
 use crate::sampler::Sampler;
 
@@ -16,6 +16,18 @@ pub(super) const LOBE_AND_ROULETTE: u32 = 3;
 /// How many there are.
 const COUNT: u32 = 4;
 const _: () = assert!(camera_pairs::COUNT <= COUNT);
+
+/// Behind the pairs of all vertices there is one more for each: its first number chooses levels of images. Scenes without levels
+/// have the numbers of before.
+#[inline(always)]
+pub(super) fn pair_of_levels<D: Domain, S: Sampler<D>>(
+    d: D,
+    sampler: &S,
+    path: &Path<D>,
+) -> [D::F; 2] {
+    let dimension = path.state.depth(d) + d.uint(COUNT * (MAX_DEPTH + 1));
+    sampler.pair(d, path.key, dimension)
+}
 
 /// A pair of the vertex that a path is looking for.
 #[inline(always)]

@@ -135,6 +135,7 @@ pub(crate) fn scene() -> SceneData {
             first: 4 * triangle,
             width: 5,
             height: 3,
+            levels: 0,
         };
         image.write_to(&mut data.buffer_mut(Buffer::Params)[slot..]);
     }

@@ -184,7 +184,7 @@ impl Formula for Texture {
 
 #[test]
 fn image_textures() {
-    for k in 0..54 {
+    for k in 0..108 {
         check(&Texture(image(k)));
     }
 }

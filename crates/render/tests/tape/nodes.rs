@@ -175,11 +175,16 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
 
 /// Image number `k` of all combinations of wrapping, filter, format, coordinates and transform.
 pub(crate) fn image(k: usize) -> ImageNode {
-    let wraps = [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp];
-    let filters = [AnyFilter::Nearest, AnyFilter::Bilinear];
+    let wraps = [AnyWrap::Repeat, AnyWrap::WhiteBorder, AnyWrap::Clamp];
+    let filters = [
+        AnyFilter::Nearest,
+        AnyFilter::Bilinear,
+        AnyFilter::Trilinear,
+    ];
     let formats = [
         AnyFormat::SrgbRgba8,
         AnyFormat::LinearRgba8,
+        AnyFormat::LinearHalf,
         AnyFormat::LinearFloat,
     ];
     ImageNode {
@@ -190,8 +195,8 @@ pub(crate) fn image(k: usize) -> ImageNode {
         },
         channel: (k % 4) as u32,
         wrap: (wraps[k % 3], wraps[k / 3 % 3]),
-        filter: filters[k / 9 % 2],
-        format: formats[k / 18 % 3],
+        filter: filters[k / 9 % 3],
+        format: formats[k / 27 % 4],
     }
 }
 
@@ -222,6 +227,9 @@ pub(crate) fn light_kinds() -> Vec<LightNode> {
         LightNode::Point,
         LightNode::Spot,
         LightNode::Directional,
+        LightNode::SphericalPoint,
+        LightNode::SphericalSpot,
+        LightNode::Sun,
         LightNode::Environment,
     ]
 }

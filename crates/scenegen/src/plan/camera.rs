@@ -1,8 +1,10 @@
 //! The camera: one of the scene's, one given by the user, or one that frames the scene.
 
 use glam::{DVec3, Quat, Vec3};
-use residual_render::camera::{CameraRecord, fitted_height};
+use residual_render::camera::{CameraRecord, PixelConeRecord, fitted_height};
+use residual_render::domain::Buffer;
 use residual_render::program::CameraNode;
+use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 
 use super::camera_choice::CameraChoice;
@@ -243,6 +245,22 @@ pub(super) fn choose(
         focus_distance,
     });
     Ok((kind, camera))
+}
+
+/// Writes what camera rays stand for.
+pub(super) fn set_pixel_cone(camera: &CameraNode, data: &mut SceneData) {
+    let (parallel, spread, turn) = match camera {
+        // The film is at a distance of 1.
+        CameraNode::Perspective | CameraNode::ThinLens => (0.0, 1.0, 0.0),
+        CameraNode::Orthographic => (1.0, 0.0, 0.0),
+        CameraNode::Panorama => (0.0, 0.0, std::f32::consts::FRAC_PI_2),
+    };
+    let record = PixelConeRecord {
+        parallel,
+        spread,
+        turn,
+    };
+    record.append_to(data.buffer_mut(Buffer::Camera));
 }
 
 #[cfg(test)]

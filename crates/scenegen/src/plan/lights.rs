@@ -10,7 +10,7 @@ use residual_render::light::{
 };
 use residual_render::program::{ColorNode, LightNode, Program, Source, SourceNode};
 use residual_render::scene_data::SceneData;
-use residual_render::texture::{AnyFormat, srgb_table};
+use residual_render::texture::srgb_table;
 
 use super::geometry::Geometry;
 use super::images::Images;
@@ -20,7 +20,8 @@ use super::options::LightPicks;
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
 use crate::desc::{
-    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, SurfaceDesc, Texels,
+    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, SurfaceDesc,
+    Texels, Wrap,
 };
 use crate::sixteen_bits;
 
@@ -134,7 +135,15 @@ fn mean_emission(scene: &SceneDesc, input: &ColorInput) -> f64 {
             .map(|t| luminance([r * t[0], g * t[1], b * t[2]]))
             .sum(),
     };
-    sum / (f64::from(image.width) * f64::from(image.height))
+    let mean = sum / (f64::from(image.width) * f64::from(image.height));
+    // How much is around the image is not known.
+    match scene.textures[texture.texture]
+        .wrap
+        .contains(&Wrap::WhiteBorder)
+    {
+        true => 0.5 * (mean + luminance(input.factor)),
+        false => mean,
+    }
 }
 
 impl PlannedLights {
@@ -228,11 +237,21 @@ impl PlannedLights {
         // The kind is known below.
         let record =
             |position: glam::Vec3| PunctualRecord::new(0, position.to_array(), light.intensity);
-        let point = |position: glam::Vec3| LightBounds::point(position.as_dvec3(), strength);
+        let size = light.size;
+        let point = |position: glam::Vec3| LightBounds {
+            corners: [-size, size].map(|size| position.as_dvec3() + f64::from(size)),
+            ..LightBounds::point(position.as_dvec3(), strength)
+        };
+        let sized = |record: PunctualRecord, without: LightNode, with: LightNode| match size {
+            0.0 => (without, record),
+            _ => (with, record.with_radius(size)),
+        };
         let (node, power, record, reach) = match light.kind {
             PunctualKind::Point { position } => {
                 let reach = Reach::Bounded(point(position));
-                (LightNode::Point, sphere * strength, record(position), reach)
+                let record = record(position);
+                let (node, record) = sized(record, LightNode::Point, LightNode::SphericalPoint);
+                (node, sphere * strength, record, reach)
             }
             PunctualKind::Spot {
                 position,
@@ -253,16 +272,19 @@ impl PlannedLights {
                     half_angle: 0.0,
                     ..point(position)
                 });
-                (LightNode::Spot, cone * strength, record, reach)
+                let (node, record) = sized(record, LightNode::Spot, LightNode::SphericalSpot);
+                (node, cone * strength, record, reach)
             }
             PunctualKind::Directional { direction } => {
                 let power = std::f64::consts::PI * radius * radius * strength;
-                (
-                    LightNode::Directional,
-                    power,
-                    record(-direction),
-                    Reach::Everywhere,
-                )
+                let sun = |towards: glam::Vec3| {
+                    PunctualRecord::sun(0, towards.to_array(), light.intensity, size)
+                };
+                let (node, record) = match size {
+                    0.0 => (LightNode::Directional, record(-direction)),
+                    _ => (LightNode::Sun, sun(-direction)),
+                };
+                (node, power, record, Reach::Everywhere)
             }
         };
         let kind = self.kind(node);
@@ -304,7 +326,7 @@ impl PlannedLights {
             Reach::Everywhere,
         );
 
-        let texels = images.param(scene, environment.image, AnyFormat::LinearFloat);
+        let texels = images.environment(scene, environment.image);
         let (sin, cos) = environment.rotation.sin_cos();
         let header = EnvironmentHeader {
             width: texels.width,

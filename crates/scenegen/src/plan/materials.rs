@@ -35,7 +35,7 @@ pub(super) fn plan_materials(
         let Some(available) = available else { continue };
         let desc = &scene.materials[material];
         let place = format!("material {:?}", desc.name);
-        let sources = Sources::new(scene, options.binding, available, images, place);
+        let sources = Sources::new(scene, options, available, images, place);
         let mut builder = Builder {
             sources,
             inputs: Vec::new(),

@@ -272,7 +272,7 @@ impl Builder<'_> {
         let normal = match own {
             None => LayerFrameNode::MeshFrame,
             Some(map) => {
-                let texel = self.sources.linear_texel(&map.texture);
+                let texel = self.sources.normal_texel(&map.texture);
                 let scale = self.sources.number(map.scale);
                 LayerFrameNode::MappedFrame {
                     texel: self.color("clearcoat_normal_texel", texel),

@@ -14,6 +14,7 @@ mod coincident;
 mod error;
 mod explain;
 mod geometry;
+mod image_levels;
 mod images;
 mod light_tree;
 mod light_tree_gain;
@@ -43,7 +44,7 @@ use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
 pub use optics::{Aperture, Focus, Optics};
-pub use options::{Binding, BodyRule, CullingRule, LightPicks, PlanOptions};
+pub use options::{Binding, BodyRule, CullingRule, LightPicks, PlanOptions, TextureResolution};
 pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
 
 use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
@@ -86,6 +87,9 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     }
     let (camera, chosen) =
         camera::choose(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
+    if materials.programs.iter().any(Program::filters) {
+        camera::set_pixel_cone(&camera, &mut data);
+    }
     let mut dismissed = [&scene.dismissed[..], &materials.dismissed].concat();
     if hidden > 0 {
         dismissed.push(Dismissed {

@@ -54,6 +54,16 @@ pub enum LightPicks {
     Tree,
 }
 
+/// At which resolution textures are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TextureResolution {
+    /// At that of their images.
+    #[default]
+    Full,
+    /// Colours of surfaces, where their samplers ask for mipmaps, at that of what a ray stands for.
+    Filtered,
+}
+
 /// The user's choices.
 #[derive(Debug, Clone)]
 pub struct PlanOptions {
@@ -73,6 +83,8 @@ pub struct PlanOptions {
     pub flat_normals: bool,
     /// How often each light is picked.
     pub light_picks: LightPicks,
+    /// At which resolution textures are read.
+    pub textures: TextureResolution,
     /// Sampler.
     pub sampler: AnySampler,
     /// What is computed along rays.
@@ -92,6 +104,7 @@ impl Default for PlanOptions {
             bodies: BodyRule::default(),
             flat_normals: false,
             light_picks: LightPicks::default(),
+            textures: TextureResolution::default(),
             sampler: AnySampler::Sobol,
             tracer: TracerNode::default(),
             layers: Layers::NONE,

@@ -66,7 +66,7 @@ impl Builder<'_> {
                 .dismiss(Effect::NormalMaps, "its normal map bends no normal");
             return None;
         }
-        let texel = self.sources.linear_texel(&map.texture);
+        let texel = self.sources.normal_texel(&map.texture);
         let scale = self.sources.number(map.scale);
         Some(NormalNode {
             texel: self.color("normal_texel", texel),
@@ -77,7 +77,7 @@ impl Builder<'_> {
     fn emission(&mut self, desc: &MaterialDesc) -> Option<EmissionNode> {
         let emission = match desc.surface {
             SurfaceDesc::Unlit => self.sources.tinted_color(&desc.emission),
-            _ => self.sources.color(&desc.emission),
+            _ => self.sources.full_color(&desc.emission),
         };
         if is_black(&emission) {
             if desc.emission.factor != [0.0; 3] {

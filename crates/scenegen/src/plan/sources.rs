@@ -9,18 +9,18 @@ use residual_render::surface::Attributes;
 use residual_render::texture::{
     AnyFilter, AnyFormat, AnyWrap, ColorParam, Image, TransformParam, UvMap,
 };
+use residual_render::tracer::TracerNode;
 
 use super::images::Images;
-use super::options::Binding;
-use crate::desc::{
-    ColorInput, Dismissed, Filter, ScalarInput, SceneDesc, Texels, TextureUse, Wrap,
-};
+use super::options::{Binding, PlanOptions, TextureResolution};
+use crate::desc::{ColorInput, Dismissed, Filter, ScalarInput, SceneDesc, TextureUse, Wrap};
 use crate::effect::Effect;
 
 /// Turns the inputs of one material's description into sources, collecting parameters.
 pub(super) struct Sources<'a> {
     scene: &'a SceneDesc,
     binding: Binding,
+    textures: TextureResolution,
     available: Attributes,
     images: &'a mut Images,
     /// The material, for messages.
@@ -46,14 +46,18 @@ pub(super) struct Collected {
 impl<'a> Sources<'a> {
     pub(super) fn new(
         scene: &'a SceneDesc,
-        binding: Binding,
+        options: &PlanOptions,
         available: Attributes,
         images: &'a mut Images,
         place: String,
     ) -> Self {
         Self {
             scene,
-            binding,
+            binding: options.binding,
+            textures: match options.tracer {
+                TracerNode::Path(_) => options.textures,
+                TracerNode::AmbientOcclusion | TracerNode::Debug(_) => TextureResolution::Full,
+            },
             available,
             images,
             place,
@@ -180,6 +184,18 @@ impl<'a> Sources<'a> {
         let node = self.new_color(input);
         self.colors.push((input.clone(), node.clone()));
         node
+    }
+
+    /// A colour input at the full resolution of its texture: that of a light, from which samples are drawn, too.
+    pub(super) fn full_color(&mut self, input: &ColorInput) -> ColorNode {
+        match std::mem::replace(&mut self.textures, TextureResolution::Full) {
+            TextureResolution::Full => self.color(input),
+            textures @ TextureResolution::Filtered => {
+                let node = self.new_color(input);
+                self.textures = textures;
+                node
+            }
+        }
     }
 
     fn new_color(&mut self, input: &ColorInput) -> ColorNode {
@@ -321,8 +337,18 @@ impl<'a> Sources<'a> {
     }
 
     fn extremes(&mut self, texture: &TextureUse, channel: usize, bytes: AnyFormat) -> [f32; 2] {
-        let image = self.scene.textures[texture.texture].image;
-        self.images.extremes(self.scene, image, channel, bytes)
+        let desc = &self.scene.textures[texture.texture];
+        let [mut least, mut greatest] =
+            self.images.extremes(self.scene, desc.image, channel, bytes);
+        // What is around the image counts, too.
+        for wrap in desc.wrap {
+            match wrap {
+                Wrap::WhiteBorder => [least, greatest] = [least.min(1.0), greatest.max(1.0)],
+                Wrap::BlackBorder => [least, greatest] = [least.min(0.0), greatest.max(0.0)],
+                Wrap::Repeat | Wrap::Mirror | Wrap::Clamp => {}
+            }
+        }
+        [least, greatest]
     }
 
     fn dismiss_image(&mut self, texture: &TextureUse, reason: &str) {
@@ -343,22 +369,41 @@ impl<'a> Sources<'a> {
         ColorNode::Image(self.image(texture, 0, AnyFormat::LinearRgba8))
     }
 
+    /// The texel of a map of normals.
+    pub(super) fn normal_texel(&mut self, texture: &TextureUse) -> ColorNode {
+        let mut image = self.image(texture, 0, AnyFormat::LinearRgba8);
+        for wrap in [&mut image.wrap.0, &mut image.wrap.1] {
+            if let AnyWrap::WhiteBorder | AnyWrap::BlackBorder = wrap {
+                *wrap = AnyWrap::FlatBorder;
+            }
+        }
+        ColorNode::Image(image)
+    }
+
     fn image(&mut self, texture: &TextureUse, channel: u32, bytes: AnyFormat) -> ImageNode {
         let desc = &self.scene.textures[texture.texture];
-        let format = match self.scene.images[desc.image].texels {
-            Texels::Rgba8(_) => bytes,
-            Texels::Rgba16(_) | Texels::RgbaF32(_) => AnyFormat::LinearFloat,
-        };
+        let format = self.images.format(self.scene, desc.image, bytes);
         let wrap = desc.wrap.map(|wrap| match wrap {
             Wrap::Repeat => AnyWrap::Repeat,
             Wrap::Mirror => AnyWrap::MirroredRepeat,
             Wrap::Clamp => AnyWrap::Clamp,
+            Wrap::WhiteBorder => AnyWrap::WhiteBorder,
+            Wrap::BlackBorder => AnyWrap::BlackBorder,
         });
         let filter = match desc.filter {
             Filter::Nearest => AnyFilter::Nearest,
-            Filter::Linear => AnyFilter::Bilinear,
+            // The means of other things than colours are those of another material.
+            Filter::Mipmapped
+                if self.textures == TextureResolution::Filtered
+                    && bytes == AnyFormat::SrgbRgba8 =>
+            {
+                AnyFilter::Trilinear
+            }
+            Filter::Linear | Filter::Mipmapped => AnyFilter::Bilinear,
         };
-        let image = self.images.param(self.scene, desc.image, bytes);
+        let image = self
+            .images
+            .param(self.scene, desc.image, [bytes, format], filter);
         let slot = self.param_record(image);
         let name = self.scene.images[desc.image].name.clone();
         self.image_names.insert(slot, name);

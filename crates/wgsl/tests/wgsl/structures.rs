@@ -160,14 +160,19 @@ pub(crate) fn images() -> Vec<ImageNode> {
     for (k, format) in [
         AnyFormat::SrgbRgba8,
         AnyFormat::LinearRgba8,
+        AnyFormat::LinearHalf,
         AnyFormat::LinearFloat,
     ]
     .into_iter()
     .enumerate()
     {
-        for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
+        for filter in [
+            AnyFilter::Nearest,
+            AnyFilter::Bilinear,
+            AnyFilter::Trilinear,
+        ] {
             for u in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
-                for v in [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp] {
+                for v in [AnyWrap::Repeat, AnyWrap::FlatBorder, AnyWrap::Clamp] {
                     let uv = UvMap {
                         set: k % 2,
                         transform: (k > 0).then_some(20),
@@ -175,7 +180,7 @@ pub(crate) fn images() -> Vec<ImageNode> {
                     images.push(ImageNode {
                         slot: 8,
                         uv,
-                        channel: k as u32 + 1,
+                        channel: k as u32,
                         wrap: (u, v),
                         filter,
                         format,
@@ -264,6 +269,9 @@ pub(crate) fn lights() -> Vec<LightNode> {
         LightNode::Point,
         LightNode::Spot,
         LightNode::Directional,
+        LightNode::SphericalPoint,
+        LightNode::SphericalSpot,
+        LightNode::Sun,
         LightNode::Environment,
     ]
 }

@@ -73,6 +73,12 @@ fn implementation(out: &mut Module, program: &Program, images: &Images<'_>) -> f
             "        #[inline(always)]\n        fn interior(&self, d: D, surface: &Surface<D>) -> Option<D::U> {{\n            Some(medium(d, surface, {offset}))\n        }}\n"
         )?;
     }
+    if program.filters() {
+        writeln!(
+            out,
+            "        #[inline(always)]\n        fn filters(&self) -> bool {{\n            true\n        }}\n"
+        )?;
+    }
     if program.disperses() {
         writeln!(
             out,

@@ -86,6 +86,7 @@ pub(super) fn read(
         name,
         kind,
         intensity,
+        size: 0.0,
     }))
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gltf::json::texture::{MagFilter, Sampler, WrappingMode};
+use gltf::json::texture::{MagFilter, MinFilter, Sampler, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{Image, Index, Texture};
 
@@ -148,7 +148,13 @@ fn source(texture: &Texture) -> Option<Index<Image>> {
 fn read_sampler(sampler: &Sampler, at: &str, warnings: &mut Warnings) -> ([Wrap; 2], Filter) {
     let filter = match sampler.mag_filter {
         Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
-        Some(Checked::Valid(MagFilter::Linear) | Checked::Invalid) | None => Filter::Linear,
+        Some(Checked::Valid(MagFilter::Linear) | Checked::Invalid) | None => {
+            match sampler.min_filter {
+                Some(Checked::Valid(MinFilter::Nearest | MinFilter::Linear)) => Filter::Linear,
+                // Without a word of the file, as renderers do it by default.
+                _ => Filter::Mipmapped,
+            }
+        }
     };
     let wrap = [sampler.wrap_s, sampler.wrap_t].map(|mode| match mode {
         Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,

@@ -3,7 +3,7 @@
 use super::map_statement::MapStatement;
 use super::statements::Statements;
 use super::textures::Textures;
-use crate::desc::{ColorInput, NormalMap, ScalarInput, TextureUse};
+use crate::desc::{ColorInput, NormalMap, ScalarInput, TextureUse, Wrap};
 use crate::import::images::{ImageRole, ScalarMap, ScalarSource};
 
 /// What larger values become, of which products and squares would be infinite; the largest radiance of images.
@@ -15,6 +15,15 @@ pub(super) struct Inputs<'r, 'a> {
     pub(super) statements: Statements<'r>,
     /// Those of all materials.
     pub(super) textures: &'r mut Textures<'a>,
+}
+
+/// A map beside a value of 0: around an image that is there once, there is nothing.
+fn before_black(map: MapStatement) -> MapStatement {
+    let wrap = match map.wrap {
+        Wrap::WhiteBorder => Wrap::BlackBorder,
+        wrap => wrap,
+    };
+    MapStatement { wrap, ..map }
 }
 
 /// What black is that stands beside a texture.
@@ -52,11 +61,15 @@ impl Inputs<'_, '_> {
             Some(map) if map.base == 0.0 => map.gain,
             _ => 1.0,
         };
+        let mut given = self.statements.color(key);
         let texture = map.map(|map| {
+            let map = match given.unwrap_or([default; 3]) {
+                [0.0, 0.0, 0.0] => before_black(map),
+                _ => map,
+            };
             self.textures
                 .add(&map, ImageRole::Factors, &mut self.statements)
         });
-        let mut given = self.statements.color(key);
         if texture.is_some() && given == Some([0.0; 3]) {
             self.statements.warn(match black {
                 BlackBesideMap::Nothing => {
@@ -99,9 +112,13 @@ impl Inputs<'_, '_> {
         map_key: &'static str,
         default: f32,
     ) -> ScalarInput {
-        let texture = self.scalar_map(map_key);
+        let given = self.fraction(key);
+        let texture = match given.unwrap_or(default) {
+            0.0 => self.scalar_map(map_key, before_black),
+            _ => self.scalar_map(map_key, |map| map),
+        };
         let default = if texture.is_some() { 1.0 } else { default };
-        let factor = self.fraction(key).unwrap_or(default);
+        let factor = given.unwrap_or(default);
         ScalarInput { factor, texture }
     }
 
@@ -116,16 +133,23 @@ impl Inputs<'_, '_> {
         clamped
     }
 
-    /// A texture with the channel that is read.
-    pub(super) fn scalar_map(&mut self, key: &'static str) -> Option<(TextureUse, usize)> {
-        let map = self.statements.map(key, ImageRole::Factors)?;
+    /// A texture with the channel that is read, of a statement as it is changed.
+    pub(super) fn scalar_map(
+        &mut self,
+        key: &'static str,
+        change: fn(MapStatement) -> MapStatement,
+    ) -> Option<(TextureUse, usize)> {
+        let map = change(self.statements.map(key, ImageRole::Factors)?);
         let source = map.source.unwrap_or(ScalarSource::Channel(0));
         Some(self.scalar_texture(&map, source))
     }
 
     /// `map_d`. Masks are grey images, except where the colour's own alpha is meant or the image has one.
     pub(super) fn alpha_map(&mut self) -> Option<(TextureUse, usize)> {
-        let map = self.statements.map("map_d", ImageRole::Factors)?;
+        let mut map = self.statements.map("map_d", ImageRole::Factors)?;
+        if self.statements.number("d") == Some(0.0) {
+            map = before_black(map);
+        }
         let source = match map.source {
             Some(source) => source,
             None if self.statements.name_one_file("map_d", "map_kd") => ScalarSource::Channel(3),

@@ -16,7 +16,7 @@ pub(super) struct MapStatement {
     pub(super) scale: [f32; 2],
     /// `-o`, along u and v.
     pub(super) offset: [f32; 2],
-    /// `-clamp`.
+    /// `-clamp`: the image is there once, as a stamp on an envelope, and around it the material is what it is without the image.
     pub(super) wrap: Wrap,
     /// `-imfchan`: what a scalar map is made of, if it says so.
     pub(super) source: Option<ScalarSource>,
@@ -69,7 +69,7 @@ impl MapStatement {
             "o" => self.offset = [0, 1].map(|index| number(arguments, index, 0.0)),
             "clamp" => {
                 self.wrap = match is_on(arguments) {
-                    true => Wrap::Clamp,
+                    true => Wrap::WhiteBorder,
                     false => Wrap::Repeat,
                 }
             }
@@ -154,7 +154,7 @@ mod tests {
         let map = MapStatement::parse("-s 2 3 -clamp on -bm 0.5 -o 0.25 my texture 1.png");
         assert_eq!(map.file, "my texture 1.png");
         assert_eq!(map.scale, [2.0, 3.0]);
-        assert_eq!(map.wrap, Wrap::Clamp);
+        assert_eq!(map.wrap, Wrap::WhiteBorder);
         assert_eq!(map.bump_scale, Some(0.5));
         assert_eq!(map.offset, [0.25, 0.0]);
         assert!(map.others.is_empty());
@@ -169,7 +169,7 @@ mod tests {
         assert_eq!(map.file, "a - b -c.png");
         assert_eq!(
             (map.bump_scale, map.wrap, map.scale),
-            (Some(0.5), Wrap::Clamp, [2.0; 2])
+            (Some(0.5), Wrap::WhiteBorder, [2.0; 2])
         );
         assert_eq!(MapStatement::parse("a -s b.png").file, "a -s b.png");
     }
@@ -197,7 +197,7 @@ mod tests {
         let map = MapStatement::parse(upper);
         let lower = upper.replace("A.png", "").to_lowercase() + "A.png";
         assert_eq!(map, MapStatement::parse(&lower));
-        assert_eq!((map.wrap, map.scale), (Wrap::Clamp, [2.0, 3.0]));
+        assert_eq!((map.wrap, map.scale), (Wrap::WhiteBorder, [2.0, 3.0]));
         assert_eq!(map.others.into_iter().collect::<Vec<_>>(), ["cc"]);
         let behind = MapStatement::parse("a.png -BM 0.5 -Clamp On");
         assert_eq!(

@@ -92,7 +92,7 @@ fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> Su
         _ => inputs.color("ks", "map_ks", 0.0, BlackBesideMap::Black),
     };
     let has_specular = specular.factor != [0.0; 3];
-    let exponent_map = inputs.scalar_map("map_ns");
+    let exponent_map = inputs.scalar_map("map_ns", |map| map);
     let exponent = inputs.statements.number("ns");
     let is_smooth = exponent.is_none_or(|exponent| exponent >= MIRROR_EXPONENT);
     if illumination == Illumination::Reflection && is_smooth && exponent_map.is_none() {

@@ -56,7 +56,7 @@ impl<'a> Textures<'a> {
         let texture = TextureDesc {
             image: self.image(&map.file, role, user),
             wrap: [map.wrap; 2],
-            filter: Filter::Linear,
+            filter: Filter::Mipmapped,
         };
         let known = self.list.iter().position(|known| *known == texture);
         let texture = known.unwrap_or_else(|| {
