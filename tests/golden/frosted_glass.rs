@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xcf781549f905c4fb;
+    pub const STRUCTURE: u64 = 0x05b2265ca273c6f1;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -107,7 +107,7 @@ mod program0 {
 
 /// "frosted"
 mod program1 {
-    use super::render::bsdf::{Bsdf, Isotropic, RoughDielectric, Solid};
+    use super::render::bsdf::{Bsdf, Isotropic, RoughDielectric};
     use super::render::domain::Domain;
     use super::render::material::{Material, Shading};
     use super::render::math::Vec3;
@@ -145,7 +145,7 @@ mod program1 {
                     transmittance,
                     ior,
                     roughness: Isotropic { roughness },
-                    interface: Solid,
+                    albedos: 6,
                 },
             }
         }

@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xd776585b7f96dd65;
+    pub const STRUCTURE: u64 = 0x3a84737ba5e8efe5;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -112,7 +112,7 @@ mod program0 {
 
 /// "frosted flint"
 mod program1 {
-    use super::render::bsdf::{Bsdf, Isotropic, RoughDielectric, Solid};
+    use super::render::bsdf::{Bsdf, Isotropic, RoughDielectric};
     use super::render::domain::Domain;
     use super::render::material::{Material, Shading, medium};
     use super::render::math::Vec3;
@@ -132,7 +132,7 @@ mod program1 {
 
         #[inline(always)]
         fn interior(&self, d: D, surface: &Surface<D>) -> Option<D::U> {
-            Some(medium(d, surface, 7))
+            Some(medium(d, surface, 3207))
         }
 
         #[inline(always)]
@@ -166,7 +166,7 @@ mod program1 {
                     transmittance,
                     ior,
                     roughness: Isotropic { roughness },
-                    interface: Solid,
+                    albedos: 7,
                 },
             }
         }

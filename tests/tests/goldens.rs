@@ -52,6 +52,7 @@ goldens! {
     float_texels
     dielectric_coat
     frosted_glass
+    frosted_pane
     independent_sampler
     light_tree
     linear_texels

@@ -144,7 +144,10 @@ impl Effects {
             BsdfNode::Glossy { fresnel, roughness } => {
                 self.add_facets(Some(fresnel), roughness, place);
             }
-            BsdfNode::RoughDielectric { roughness, .. } => self.add_facets(None, roughness, place),
+            BsdfNode::RoughDielectric { roughness, .. }
+            | BsdfNode::RoughSheet { roughness, .. } => {
+                self.add_facets(None, roughness, place);
+            }
             _ => {}
         }
     }
@@ -239,10 +242,8 @@ fn bsdf_effects(bsdf: &BsdfNode) -> &'static [Effect] {
             AnyInterface::Solid => &[Effect::Refraction],
             AnyInterface::Thin => &[Effect::ThinTransmission],
         },
-        BsdfNode::RoughDielectric { interface, .. } => match interface {
-            AnyInterface::Solid => &[Effect::Refraction, Effect::RoughTransmission],
-            AnyInterface::Thin => &[Effect::ThinTransmission, Effect::RoughTransmission],
-        },
+        BsdfNode::RoughDielectric { .. } => &[Effect::Refraction, Effect::RoughTransmission],
+        BsdfNode::RoughSheet { .. } => &[Effect::ThinTransmission, Effect::RoughTransmission],
         BsdfNode::Phong { .. } => &[Effect::PhongReflection],
         BsdfNode::Mirror { .. } => &[Effect::MirrorReflection],
         BsdfNode::Mix { .. } | BsdfNode::Sum { .. } => &[Effect::MixedLobes],

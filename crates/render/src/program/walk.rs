@@ -137,13 +137,12 @@ impl Program {
 impl BsdfNode {
     /// Whether the surface is that of a body, into which light is bent.
     pub fn encloses(&self) -> bool {
-        let interface = match self {
-            Self::Dielectric { interface, .. } | Self::RoughDielectric { interface, .. } => {
-                Some(*interface)
-            }
-            _ => None,
+        let is_body = match self {
+            Self::Dielectric { interface, .. } => *interface == AnyInterface::Solid,
+            Self::RoughDielectric { .. } => true,
+            _ => false,
         };
-        interface == Some(AnyInterface::Solid) || self.children().any(Self::encloses)
+        is_body || self.children().any(Self::encloses)
     }
 
     /// The BSDFs that it combines.
@@ -173,6 +172,7 @@ impl BsdfNode {
             self,
             Self::Dielectric { .. }
                 | Self::RoughDielectric { .. }
+                | Self::RoughSheet { .. }
                 | Self::DiffuseTransmission { .. }
         ) || self.children().any(Self::transmits)
     }

@@ -14,11 +14,13 @@ use residual_render::texture::ImageParam;
 use residual_render::triangle::TriangleRecord;
 
 /// Words of a triangle's parameters.
-pub(crate) const BLOCK: u32 = 64;
+pub(crate) const BLOCK: u32 = ALBEDOS + 3200;
 /// In a block: an image's slot.
 pub(crate) const IMAGE: u32 = 48;
 /// In a block: a texture transform.
 pub(crate) const TRANSFORM: u32 = 52;
+/// In a block: albedos of a rough dielectric.
+pub(crate) const ALBEDOS: u32 = 64;
 /// How many triangles there are.
 pub(crate) const TRIANGLES: u32 = 4;
 

@@ -11,7 +11,7 @@ use residual_render::surface::Attributes;
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Input, UvMap};
 use residual_render::tracer::{Between, TracerNode};
 
-use crate::common::{IMAGE, Random, TRANSFORM, TRIANGLES};
+use crate::common::{ALBEDOS, IMAGE, Random, TRANSFORM, TRIANGLES};
 
 pub(crate) fn hit_arguments(random: &mut Random) -> (Vec<f32>, Vec<u32>) {
     let (u, v) = (random.unit(), random.unit());
@@ -115,11 +115,16 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         roughness: third,
     };
     let paper = BsdfNode::DiffuseTransmission { color: second };
-    let frosted = |interface| BsdfNode::RoughDielectric {
+    let frosted = BsdfNode::RoughDielectric {
         transmittance: first,
         ior: fourth,
         roughness: isotropic.clone(),
-        interface,
+        albedos: ALBEDOS,
+    };
+    let frosted_sheet = BsdfNode::RoughSheet {
+        transmittance: first,
+        ior: fourth,
+        roughness: isotropic.clone(),
     };
     let glass = |interface| BsdfNode::Dielectric {
         transmittance: first,
@@ -159,8 +164,8 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         paper.clone(),
         coat(&sheen, &coated),
         coat(&conductor, &mix(&diffuse, &paper)),
-        frosted(AnyInterface::Solid),
-        frosted(AnyInterface::Thin),
+        frosted,
+        frosted_sheet,
         sum(&diffuse, &mirror),
         mix(&coated, &conductor),
         mix(&coated, &glass(AnyInterface::Thin)),

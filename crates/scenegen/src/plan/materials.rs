@@ -14,6 +14,7 @@ use super::options::{CullingRule, PlanOptions};
 use super::planned::MaterialUse;
 use super::planned_materials::{Materials, PlannedMaterial};
 use super::program::Builder;
+use super::rough_dielectrics::RoughDielectrics;
 use super::sources::Sources;
 use crate::desc::{Attenuation, MaterialDesc, SceneDesc, SurfaceDesc};
 
@@ -30,6 +31,7 @@ pub(super) fn plan_materials(
     let mut indices = BTreeMap::new();
     let available = available_attributes(scene);
     let mut media = Media::default();
+    let mut rough_dielectrics = RoughDielectrics::default();
     let has_media = (0..available.len())
         .any(|material| available[material].is_some() && absorbs(scene, material));
     for (material, available) in available.into_iter().enumerate() {
@@ -42,6 +44,7 @@ pub(super) fn plan_materials(
             sources,
             inputs: Vec::new(),
             encloses,
+            rough_dielectrics: &mut rough_dielectrics,
         };
         let opacity = builder.opacity(desc);
         if opacity == Opacity::Transparent {

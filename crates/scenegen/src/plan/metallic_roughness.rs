@@ -133,12 +133,22 @@ impl Builder<'_> {
             return self.smooth_dielectric(tint, ior, interface);
         }
         let ior = surface.ior.max(LEAST_ROUGH_IOR);
-        let ior = self.refraction(surface, ior, interface);
-        BsdfNode::RoughDielectric {
-            transmittance: self.color("transmittance", tint),
-            ior: self.scalar("ior", ior),
-            roughness: self.roughness(surface),
-            interface,
+        let node = self.refraction(surface, ior, interface);
+        let transmittance = self.color("transmittance", tint);
+        let node = self.scalar("ior", node);
+        let roughness = self.roughness(surface);
+        match interface {
+            AnyInterface::Solid => BsdfNode::RoughDielectric {
+                transmittance,
+                ior: node,
+                roughness,
+                albedos: self.sources.table(self.rough_dielectrics.albedos(ior)),
+            },
+            AnyInterface::Thin => BsdfNode::RoughSheet {
+                transmittance,
+                ior: node,
+                roughness,
+            },
         }
     }
 

@@ -7,6 +7,7 @@ use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 
 use super::opacity::Opacity;
+use super::rough_dielectrics::RoughDielectrics;
 use super::sources::Sources;
 use crate::desc::{MaterialDesc, NormalMap, SurfaceDesc};
 use crate::effect::Effect;
@@ -17,6 +18,7 @@ pub(super) struct Builder<'a> {
     pub(super) inputs: Vec<InputNode>,
     /// The material's surfaces are closed.
     pub(super) encloses: bool,
+    pub(super) rough_dielectrics: &'a mut RoughDielectrics,
 }
 
 impl Builder<'_> {

@@ -100,11 +100,16 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         roughness: third,
     };
     let paper = BsdfNode::DiffuseTransmission { color: second };
-    let frosted = |interface| BsdfNode::RoughDielectric {
+    let frosted = BsdfNode::RoughDielectric {
         transmittance: first,
         ior: fourth,
         roughness: isotropic.clone(),
-        interface,
+        albedos: 8,
+    };
+    let frosted_sheet = BsdfNode::RoughSheet {
+        transmittance: first,
+        ior: fourth,
+        roughness: isotropic.clone(),
     };
     let glass = |interface| BsdfNode::Dielectric {
         transmittance: first,
@@ -129,8 +134,8 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         brushed,
         coat(&sheen, &coated),
         paper,
-        frosted(AnyInterface::Solid),
-        frosted(AnyInterface::Thin),
+        frosted,
+        frosted_sheet,
         glass(AnyInterface::Solid),
         glass(AnyInterface::Thin),
         phong.clone(),
