@@ -354,6 +354,21 @@ fn surfaces() -> Vec<Tiny> {
             },
         ),
         Tiny::new(
+            "clay",
+            &[Effect::DielectricCoat, Effect::RoughDiffuseReflection],
+            &[Effect::DiffuseReflection],
+            scene(
+                surface(
+                    "clay",
+                    MetallicRoughness {
+                        diffuse_roughness: scalar(0.8),
+                        ..metallic_roughness([0.7, 0.4, 0.3], 0.0, 0.6)
+                    },
+                ),
+                corner(),
+            ),
+        ),
+        Tiny::new(
             "paper",
             &[
                 Effect::DielectricCoat,

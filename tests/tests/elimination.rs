@@ -60,6 +60,7 @@ const WORDS: &[(&str, &[Effect])] = &[
         "RoughDielectric {|RoughSheet {",
         &[Effect::RoughTransmission],
     ),
+    ("RoughDiffuse {", &[Effect::RoughDiffuseReflection]),
     ("DiffuseTransmission {", &[Effect::DiffuseTransmission]),
     ("Absorbing", &[Effect::Absorption]),
     ("Dispersing", &[Effect::Dispersion]),

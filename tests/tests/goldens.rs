@@ -67,6 +67,7 @@ goldens! {
     odd_names
     orthographic_camera
     panorama
+    clay
     paper
     phong
     prism

@@ -1,7 +1,7 @@
 //! What no BSDF may do: give out more than comes in (hard case M-04).
 
 use residual_render::bsdf::{
-    Black, Bsdf, Coated, Dielectric, Diffuse, Mirror, Mix, Phong, Sheen, Sum, Thin,
+    Black, Bsdf, Coated, Dielectric, Diffuse, Mirror, Mix, Phong, RoughDiffuse, Sheen, Sum, Thin,
 };
 use residual_render::domain::{Precise, Scalar};
 use residual_render::math::vec3::vec3;
@@ -144,6 +144,53 @@ fn white_coated_surfaces_conserve_light() {
         };
         assert_conserves(&format!("clear coat on {roughness}"), &clear_coat);
     }
+}
+
+/// Clay that absorbs nothing loses nothing: up to its fits, 1e-3.
+#[test]
+fn white_clay_conserves_light() {
+    for roughness in ROUGHNESSES {
+        let clay = RoughDiffuse {
+            albedo: WHITE,
+            roughness: Const(roughness),
+        };
+        assert_conserves(&format!("clay {roughness}"), &clay);
+        let coat = facets([0.04; 3], 1.0, 0.3);
+        let coated = Coated { coat, base: clay };
+        assert_conserves(&format!("glazed clay {roughness}"), &coated);
+    }
+}
+
+/// Smooth clay is a Lambertian surface, whatever the samples.
+#[test]
+fn smooth_clay_is_matte() {
+    let data = scene(&[FLOOR]);
+    let buffers = data.buffers();
+    let d = Precise::new(&buffers);
+    let surface = floor(d);
+    let albedo = Const([0.8, 0.4, 0.1]);
+    let clay = RoughDiffuse {
+        albedo,
+        roughness: Const(0.0),
+    };
+    let matte = Diffuse { albedo };
+    let mut worst = Worst::default();
+    let mut rng = Rng::new(94);
+    for _ in 0..10_000 {
+        let mut direction = || {
+            let [x, y, z] = rng.direction();
+            vec3(x, y, z.abs())
+        };
+        let (wo, wi) = (direction(), direction());
+        let [a, b] = [
+            clay.eval(d, &surface, wo, wi),
+            matte.eval(d, &surface, wo, wi),
+        ];
+        let differences = array(a.value - b.value).into_iter().chain([a.pdf - b.pdf]);
+        let difference = differences.map(f64::abs).fold(0.0, f64::max);
+        worst.add(difference, || format!("{wo:?} {wi:?}"));
+    }
+    worst.assert_below(1e-9, "smooth clay against a Lambertian surface");
 }
 
 /// Glass that absorbs nothing loses nothing, from either side. Radiance is divided by η² where it is carried across.

@@ -2,7 +2,7 @@
 
 use residual_render::bsdf::{
     Anisotropic, Bsdf, BsdfSample, Coated, Dielectric, Diffuse, DiffuseTransmission, Glossy,
-    Mirror, Mix, Sheen, Solid, Thin, ThinFilm,
+    Mirror, Mix, RoughDiffuse, Sheen, Solid, Thin, ThinFilm,
 };
 use residual_render::domain::{Buffers, Scalar};
 use residual_render::math::Vec3;
@@ -78,6 +78,8 @@ fn degenerate_directions_give_finite_values() {
         };
         check("sheen", &sheen);
         let base = Diffuse { albedo: WHITE };
+        let albedo = WHITE;
+        check("clay", &RoughDiffuse { albedo, roughness });
         check("cloth", &Coated { coat: sheen, base });
         let brushed = Anisotropic {
             roughness,

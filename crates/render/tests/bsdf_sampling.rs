@@ -1,6 +1,8 @@
 //! BSDF sampling against its own density, lobe by lobe.
 
-use residual_render::bsdf::{Anisotropic, Coated, Diffuse, Glossy, Mix, Phong, Sheen, Sum};
+use residual_render::bsdf::{
+    Anisotropic, Coated, Diffuse, Glossy, Mix, Phong, RoughDiffuse, Sheen, Sum,
+};
 use residual_render::texture::Const;
 
 use crate::support::Worst;
@@ -90,6 +92,21 @@ fn cloth() {
             base: Diffuse { albedo: BASE },
         };
         Case::new(format!("cloth {roughness}"), cloth, 1.0, &data).check(&mut family, 1e-3, 1e-3);
+    }
+    family.assert_plausible();
+}
+
+#[test]
+fn clay() {
+    let data = scene(&[FLOOR]);
+    let mut family = Family::default();
+    for roughness in [0.0, 0.1, 0.5, 1.0] {
+        let name = format!("clay {roughness}");
+        let bsdf = RoughDiffuse {
+            albedo: BASE,
+            roughness: Const(roughness),
+        };
+        Case::new(name, bsdf, 1.0, &data).check(&mut family, 1e-3, 1e-4);
     }
     family.assert_plausible();
 }

@@ -2,7 +2,7 @@
 
 use residual_render::bsdf::{
     Anisotropic, Bsdf, Coated, Dielectric, Diffuse, DiffuseTransmission, Glossy, Isotropic, Mirror,
-    Mix, Phong, Sheen, Solid, Sum, Thin, ThinFilm,
+    Mix, Phong, RoughDiffuse, Sheen, Solid, Sum, Thin, ThinFilm,
 };
 use residual_render::domain::{Buffer, Domain, Lanes};
 use residual_render::light::{
@@ -92,6 +92,7 @@ fn bsdfs_agree() {
             fresnel: ThinFilm { normal: RED, grazing: Const(1.0), strength: Const(0.8), ior: Const(1.33), thickness: Const(420.0) },
             roughness: Isotropic { roughness: Const(0.2) },
         };
+        "clay" RoughDiffuse { albedo: RED, roughness: Const(0.7) };
         "sheen" Sheen { color: RED, roughness: Const(0.4) };
         "cloth" Coated { coat: Sheen { color: RED, roughness: Const(0.6) }, base: Diffuse { albedo: RED } };
         "paper" DiffuseTransmission { color: RED };

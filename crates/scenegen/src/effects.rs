@@ -223,7 +223,10 @@ fn coat_effect(coat: &BsdfNode, base: &BsdfNode) -> Effect {
 
 fn is_matte(bsdf: &BsdfNode) -> bool {
     match bsdf {
-        BsdfNode::Black | BsdfNode::Diffuse { .. } | BsdfNode::DiffuseTransmission { .. } => true,
+        BsdfNode::Black
+        | BsdfNode::Diffuse { .. }
+        | BsdfNode::RoughDiffuse { .. }
+        | BsdfNode::DiffuseTransmission { .. } => true,
         BsdfNode::Mix { a, b, .. } => is_matte(a) && is_matte(b),
         _ => false,
     }
@@ -234,6 +237,7 @@ fn bsdf_effects(bsdf: &BsdfNode) -> &'static [Effect] {
     match bsdf {
         BsdfNode::Black => &[],
         BsdfNode::Diffuse { .. } => &[Effect::DiffuseReflection],
+        BsdfNode::RoughDiffuse { .. } => &[Effect::RoughDiffuseReflection],
         BsdfNode::DiffuseTransmission { .. } => &[Effect::DiffuseTransmission],
         BsdfNode::Glossy { .. } => &[Effect::MetallicReflection],
         BsdfNode::Sheen { .. } => &[Effect::Sheen],

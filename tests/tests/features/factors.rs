@@ -75,6 +75,11 @@ const PLACES: &[(Effect, Place)] = &[
         surface.specular = number(factor, texture);
         material("specular", SurfaceDesc::MetallicRoughness(surface))
     }),
+    (Effect::RoughDiffuseReflection, |factor, texture| {
+        let mut surface = metallic_roughness([0.5; 3], 0.0, 0.5);
+        surface.diffuse_roughness = number(factor, texture);
+        material("clay", SurfaceDesc::MetallicRoughness(surface))
+    }),
     (Effect::PhongReflection, |factor, texture| {
         let surface = PhongSurface {
             diffuse: color([0.5; 3]),

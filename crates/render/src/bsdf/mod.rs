@@ -8,6 +8,7 @@
 //! node table (`program/nodes.rs`).
 
 mod albedo_table;
+mod azimuth;
 mod coated;
 mod combine;
 mod dielectric;
@@ -22,6 +23,7 @@ mod mirror;
 mod own_normal;
 mod phong;
 mod rough_dielectric;
+mod rough_diffuse;
 mod rough_sheet;
 mod roughness;
 mod sheen;
@@ -40,6 +42,7 @@ pub use mirror::Mirror;
 pub use own_normal::{LayerFrame, MappedFrame, MeshFrame, OwnNormal};
 pub use phong::Phong;
 pub use rough_dielectric::{RoughDielectric, rough_dielectric_albedos};
+pub use rough_diffuse::RoughDiffuse;
 pub use rough_sheet::RoughSheet;
 pub use roughness::{Anisotropic, Isotropic, Roughness};
 pub use sheen::Sheen;

@@ -21,6 +21,7 @@ nodes! {
     BsdfNode: Bsdf in bsdf {
         Black,
         Diffuse { albedo: Input },
+        RoughDiffuse { albedo: Input, roughness: Input },
         DiffuseTransmission { color: Input },
         Glossy { fresnel: FresnelNode, roughness: RoughnessNode },
         Sheen { color: Input, roughness: Input },

@@ -75,6 +75,10 @@ pub(crate) fn inputs(constant: bool) -> Vec<InputNode> {
 pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     let [first, second, third, fourth, fifth] = [0, 1, 2, 3, 4].map(Input);
     let diffuse = BsdfNode::Diffuse { albedo: first };
+    let clay = BsdfNode::RoughDiffuse {
+        albedo: first,
+        roughness: third,
+    };
     let isotropic = RoughnessNode::Isotropic { roughness: third };
     let schlick = FresnelNode::Schlick {
         normal: second,
@@ -151,6 +155,7 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     vec![
         BsdfNode::Black,
         diffuse.clone(),
+        clay,
         conductor.clone(),
         coated.clone(),
         glass(AnyInterface::Solid),

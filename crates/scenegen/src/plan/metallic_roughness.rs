@@ -203,7 +203,7 @@ impl Builder<'_> {
 
     /// `mix(reflected, transmitted, diffuse transmission)`.
     fn matte(&mut self, surface: &MetallicRoughness, albedo: ColorNode) -> BsdfNode {
-        let reflected = self.diffuse(albedo);
+        let reflected = self.rough_diffuse(surface, albedo);
         let share = self.sources.scalar(&surface.diffuse_transmission);
         if share == ZERO {
             return reflected;
@@ -222,6 +222,17 @@ impl Builder<'_> {
             a: Box::new(reflected),
             b: Box::new(transmitted),
             weight: self.scalar("diffuse_transmission", share),
+        }
+    }
+
+    fn rough_diffuse(&mut self, surface: &MetallicRoughness, albedo: ColorNode) -> BsdfNode {
+        let roughness = self.sources.scalar(&surface.diffuse_roughness);
+        if roughness == ZERO || is_black(&albedo) {
+            return self.diffuse(albedo);
+        }
+        BsdfNode::RoughDiffuse {
+            albedo: self.color("albedo", albedo),
+            roughness: self.scalar("diffuse_roughness", roughness),
         }
     }
 

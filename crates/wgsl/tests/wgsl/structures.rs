@@ -60,6 +60,10 @@ pub(crate) fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Struc
 pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     let [first, second, third, fourth] = [0, 1, 2, 3].map(Input);
     let diffuse = BsdfNode::Diffuse { albedo: first };
+    let clay = BsdfNode::RoughDiffuse {
+        albedo: first,
+        roughness: third,
+    };
     let isotropic = RoughnessNode::Isotropic { roughness: third };
     let schlick = FresnelNode::Schlick {
         normal: second,
@@ -127,6 +131,7 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     vec![
         BsdfNode::Black,
         diffuse.clone(),
+        clay,
         conductor.clone(),
         coated.clone(),
         coat(&own(LayerFrameNode::MeshFrame), &conductor),
