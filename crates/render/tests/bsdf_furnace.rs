@@ -44,7 +44,9 @@ fn albedos_seen<B: for<'a> Bsdf<Scalar<'a>>>(
         }
         (cos, mean)
     };
-    [1.0, 0.8, 0.5, 0.2, 0.05, 0.01].map(seen).to_vec()
+    [1.0, 0.8, 0.5, 0.2, 0.05, 0.01, 1e-3, 1e-4]
+        .map(seen)
+        .to_vec()
 }
 
 /// The white furnace: the 99.9 % confidence interval of the albedo is narrow and not wholly above 1. (Its upper

@@ -51,7 +51,7 @@ pub fn rough_dielectric_albedos(ior: f32) -> Vec<f32> {
 /// The integral over visible normals of what facets return and let through.
 #[inline(always)]
 fn single_events<D: Lanes>(d: D, eta: f64, alpha: f64, cos: f64) -> f32 {
-    const ANGLES: usize = 64;
+    const ANGLES: usize = 96;
     const HEIGHTS: usize = 48;
     let facets = Facets {
         ggx: Ggx::from_roughness(d, d.lit(alpha.sqrt())),

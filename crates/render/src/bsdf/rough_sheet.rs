@@ -66,7 +66,7 @@ where
         let mirrored = vec3(wi.x, wi.y, d.abs(wi.z));
         let sum = wo + mirrored;
         let half = sum.normalize_any(d);
-        let (value, pdf) = facets.ggx.reflection(d, wo, mirrored, half);
+        let (value, pdf) = facets.ggx.bounded_reflection(d, wo, mirrored, half);
         let (reflectance, _) = fresnel(d, half_cosine(d, sum, half), facets.ior);
         let share = d.select(below, d.lit(1.0) - reflectance, reflectance);
         let white = Vec3::splat(d.lit(1.0));
@@ -80,17 +80,17 @@ where
     #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         let facets = self.facets(d, surface, wo);
-        let h = facets.ggx.sample_visible_normal(d, wo, [u[0], u[1]]);
+        let h = facets.ggx.sample_reflecting_normal(d, wo, [u[0], u[1]]);
         let (reflectance, _) = fresnel(d, d.max(wo.dot(d, h), d.lit(0.0)), facets.ior);
         let is_mirrored = d.lt(u[2], reflectance);
         let above = reflect(d, wo, h);
-        let (_, pdf) = facets.ggx.reflection(d, wo, above, h);
+        let (_, pdf) = facets.ggx.bounded_reflection(d, wo, above, h);
         let white = Vec3::splat(d.lit(1.0));
         let share = d.select(is_mirrored, reflectance, d.lit(1.0) - reflectance);
         let color = Vec3::choose(d, is_mirrored, white, facets.tint);
         BsdfSample {
             wi: Vec3::choose(d, is_mirrored, above, vec3(above.x, above.y, -above.z)),
-            weight: color.scale(facets.ggx.sample_weight(d, wo, above) * facets.all),
+            weight: color.scale(facets.ggx.bounded_weight(d, wo, above) * facets.all),
             pdf: pdf * share,
             delta: d.truth(false),
         }

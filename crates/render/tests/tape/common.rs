@@ -14,7 +14,7 @@ use residual_render::texture::ImageParam;
 use residual_render::triangle::TriangleRecord;
 
 /// Words of a triangle's parameters.
-pub(crate) const BLOCK: u32 = ALBEDOS + 3200;
+pub(crate) const BLOCK: u32 = ALBEDOS + 3584;
 /// In a block: an image's slot.
 pub(crate) const IMAGE: u32 = 48;
 /// In a block: a texture transform.
