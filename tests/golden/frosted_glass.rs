@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xa40f36747cd09e6d;
+    pub const STRUCTURE: u64 = 0xd9879a1c6240aab7;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -146,6 +146,7 @@ mod program1 {
                     ior,
                     roughness: Isotropic { roughness },
                     interface: Solid,
+                    albedos: 6,
                 },
             }
         }

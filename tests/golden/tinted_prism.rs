@@ -28,7 +28,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x3183ecb9662dc79d;
+    pub const STRUCTURE: u64 = 0x51fb1494baa5d767;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -137,7 +137,7 @@ mod program1 {
 
         #[inline(always)]
         fn interior(&self, d: D, surface: &Surface<D>) -> Option<D::U> {
-            Some(medium(d, surface, 7))
+            Some(medium(d, surface, 3591))
         }
 
         #[inline(always)]
@@ -172,6 +172,7 @@ mod program1 {
                     ior,
                     roughness: Isotropic { roughness },
                     interface: Solid,
+                    albedos: 7,
                 },
             }
         }

@@ -379,6 +379,34 @@ fn surfaces() -> Vec<Tiny> {
             ),
         ),
         Tiny::new(
+            "frosted_pane",
+            &[Effect::ThinTransmission, Effect::RoughTransmission],
+            &[],
+            {
+                let pane = sheet([-0.6, -0.5, 0.8], [1.1, 0.0, 0.2], [0.0, 0.9, 0.0]);
+                let frosted = MetallicRoughness {
+                    roughness: scalar(0.3),
+                    ..glass(false)
+                };
+                behind(surface("frosted", frosted), [pane])
+            },
+        ),
+        Tiny::new(
+            "clay",
+            &[Effect::DielectricCoat, Effect::RoughDiffuseReflection],
+            &[Effect::DiffuseReflection],
+            scene(
+                surface(
+                    "clay",
+                    MetallicRoughness {
+                        diffuse_roughness: scalar(0.8),
+                        ..metallic_roughness([0.7, 0.4, 0.3], 0.0, 0.6)
+                    },
+                ),
+                corner(),
+            ),
+        ),
+        Tiny::new(
             "paper",
             &[
                 Effect::DielectricCoat,

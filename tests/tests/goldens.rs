@@ -54,6 +54,7 @@ goldens! {
     float_texels
     dielectric_coat
     frosted_glass
+    frosted_pane
     half_texels
     independent_sampler
     light_tree
@@ -71,6 +72,7 @@ goldens! {
     odd_names
     orthographic_camera
     panorama
+    clay
     paper
     phong
     prism

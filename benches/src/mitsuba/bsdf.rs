@@ -121,10 +121,7 @@ impl Inputs<'_> {
                 interface: AnyInterface::Thin,
                 ..
             }
-            | BsdfNode::RoughDielectric {
-                interface: AnyInterface::Thin,
-                ..
-            } => Err("a thin dielectric".to_owned()),
+            | BsdfNode::RoughSheet { .. } => Err("a thin dielectric".to_owned()),
             BsdfNode::Dielectric {
                 interface: AnyInterface::SolidAmongSolids,
                 ..
@@ -137,13 +134,15 @@ impl Inputs<'_> {
                 transmittance,
                 ior,
                 roughness,
-                interface: AnyInterface::Solid,
+                interface: _,
+                albedos: _,
             } => Ok(Element::plugin("bsdf", "roughdielectric")
                 .string("distribution", "ggx")
                 .float("alpha", self.roughness(roughness)?.powi(2))
                 .float("int_ior", self.number(*ior)?)
                 .float("ext_ior", 1)
                 .rgb("specular_transmittance", self.color(*transmittance)?)),
+            BsdfNode::RoughDiffuse { .. } => Err("rough diffuse reflection".to_owned()),
             BsdfNode::DiffuseTransmission { .. } => Err("diffuse transmission".to_owned()),
             BsdfNode::Sheen { .. } => Err("sheen".to_owned()),
             BsdfNode::OwnNormal { .. } => Err("a coat with its own normals".to_owned()),

@@ -2,7 +2,7 @@
 
 use residual_render::bsdf::{
     Anisotropic, Bsdf, BsdfSample, Coated, Dielectric, Diffuse, DiffuseTransmission, Glossy,
-    Isotropic, Mirror, Mix, RoughDielectric, Sheen, Solid, Thin, ThinFilm,
+    Mirror, Mix, RoughDiffuse, Sheen, Solid, Thin, ThinFilm,
 };
 use residual_render::domain::{Buffers, Scalar};
 use residual_render::math::Vec3;
@@ -10,7 +10,9 @@ use residual_render::math::vec3::vec3;
 use residual_render::surface::Surface;
 use residual_render::texture::Const;
 
-use crate::support::bsdfs::{WHITE, coated, conductor, phong, view};
+use crate::support::bsdfs::{
+    WHITE, coated, conductor, frosted, frosted_sheet, glass_scene, phong, view,
+};
 use crate::support::random::Rng;
 use crate::support::scenes::{FLOOR, floor, scene, surface_at};
 use crate::support::{Worst, array, dot};
@@ -22,7 +24,7 @@ fn degenerate_directions_give_finite_values() {
         check_sides(name, bsdf, true);
     }
     fn check_sides<B: for<'a> Bsdf<Scalar<'a>>>(name: &str, bsdf: &B, is_opaque: bool) {
-        let data = scene(&[FLOOR]);
+        let data = glass_scene(1.5);
         let buffers = data.buffers();
         let d = Scalar::new(&buffers);
         let surface = floor(d);
@@ -76,6 +78,8 @@ fn degenerate_directions_give_finite_values() {
         };
         check("sheen", &sheen);
         let base = Diffuse { albedo: WHITE };
+        let albedo = WHITE;
+        check("clay", &RoughDiffuse { albedo, roughness });
         check("cloth", &Coated { coat: sheen, base });
         let brushed = Anisotropic {
             roughness,
@@ -93,22 +97,10 @@ fn degenerate_directions_give_finite_values() {
             roughness: brushed,
         };
         check("brushed film", &glossy);
-        for ior in [1.001, 1.5, 3.0].map(Const) {
-            let roughness = Isotropic { roughness };
-            let solid = RoughDielectric {
-                transmittance: WHITE,
-                ior,
-                roughness,
-                interface: Solid,
-            };
-            check_sides("frosted solid", &solid, false);
-            let thin = RoughDielectric {
-                transmittance: WHITE,
-                ior,
-                roughness,
-                interface: Thin,
-            };
-            check_sides("frosted sheet", &thin, false);
+        for ior in [1.001, 1.5, 3.0] {
+            check_sides("frosted solid", &frosted(WHITE.0, ior, roughness.0), false);
+            let sheet = frosted_sheet(WHITE.0, ior, roughness.0);
+            check_sides("frosted sheet", &sheet, false);
         }
     }
     check_sides("paper", &DiffuseTransmission { color: WHITE }, false);

@@ -1,7 +1,8 @@
 //! What no BSDF may do: depend on the direction of light (hard case M-05).
 
 use residual_render::bsdf::{
-    Bsdf, BsdfKind, BsdfSample, BsdfValue, Diffuse, DirectionalAlbedo, Fresnel, Mix, Roughness, Sum,
+    Bsdf, BsdfKind, BsdfSample, BsdfValue, Diffuse, DirectionalAlbedo, Fresnel, Mix, RoughDiffuse,
+    Roughness, Sum,
 };
 use residual_render::domain::Scalar;
 use residual_render::math::vec3::vec3;
@@ -97,6 +98,13 @@ fn reciprocity() {
     }
     for exponent in [1.0, 20.0, 100.0] {
         asymmetry(&format!("phong {exponent}"), &phong(exponent));
+    }
+    for roughness in [0.0, 0.3, 1.0] {
+        let clay = RoughDiffuse {
+            albedo: Const([0.7; 3]),
+            roughness: Const(roughness),
+        };
+        asymmetry(&format!("clay {roughness}"), &clay);
     }
     let mix = Mix {
         a: Diffuse { albedo: WHITE },

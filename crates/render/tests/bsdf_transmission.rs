@@ -1,14 +1,13 @@
 //! Lobes that scatter to both sides: samples against values and densities, by moments over the whole sphere.
 
-use residual_render::bsdf::{
-    Bsdf, Coated, Diffuse, DiffuseTransmission, Isotropic, Mix, RoughDielectric, Solid, Thin,
-};
+use residual_render::bsdf::{Bsdf, Coated, Diffuse, DiffuseTransmission, Mix};
 use residual_render::domain::{Precise, Scalar};
 use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
+use residual_render::scene_data::SceneData;
 use residual_render::texture::Const;
 
-use crate::support::bsdfs::{facets, view};
+use crate::support::bsdfs::{facets, frosted, frosted_sheet, glass_scene, view};
 use crate::support::random::Rng;
 use crate::support::scenes::{FLOOR, floor, scene, surface_at};
 use crate::support::stats::Mean;
@@ -26,13 +25,13 @@ fn moments(wi: [f64; 3]) -> [f64; MOMENTS] {
 
 /// ∫ pdf·g and ∫ value·g over the sphere, by midpoints.
 fn integrals<B: for<'a> Bsdf<Precise<'a>>>(
+    data: &SceneData,
     bsdf: &B,
     wo: Vec3<f64>,
     is_front: bool,
 ) -> [[f64; MOMENTS]; 2] {
     const STEPS: usize = 2048;
     const ANGLES: usize = 512;
-    let data = scene(&[FLOOR]);
     let buffers = data.buffers();
     let d = Precise::new(&buffers);
     let surface = match is_front {
@@ -54,11 +53,10 @@ fn integrals<B: for<'a> Bsdf<Precise<'a>>>(
     sums
 }
 
-fn check<B>(name: &str, bsdf: &B, is_front: bool)
+fn check<B>(name: &str, data: &SceneData, bsdf: &B, is_front: bool)
 where
     B: for<'a> Bsdf<Precise<'a>> + for<'a> Bsdf<Scalar<'a>>,
 {
-    let data = scene(&[FLOOR]);
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
     let surface = match is_front {
@@ -80,7 +78,7 @@ where
             }
         }
         let exact = vec3(f64::from(wo.x), f64::from(wo.y), f64::from(wo.z));
-        let integrals = integrals(bsdf, exact, is_front);
+        let integrals = integrals(data, bsdf, exact, is_front);
         for (what, (means, integrals)) in
             ["density", "value"].iter().zip(means.iter().zip(integrals))
         {
@@ -99,34 +97,15 @@ where
 
 #[test]
 fn rough_dielectrics() {
-    for roughness in [0.5, 0.7, 1.0] {
-        for ior in [1.3, 1.5, 2.4] {
-            let roughness = Isotropic {
-                roughness: Const(roughness),
-            };
-            let solid = RoughDielectric {
-                transmittance: TINT,
-                ior: Const(ior),
-                roughness,
-                interface: Solid,
-            };
-            check(
-                &format!("solid {roughness:?}, {ior}, entering"),
-                &solid,
-                true,
-            );
-            check(
-                &format!("solid {roughness:?}, {ior}, leaving"),
-                &solid,
-                false,
-            );
-            let thin = RoughDielectric {
-                transmittance: TINT,
-                ior: Const(ior),
-                roughness,
-                interface: Thin,
-            };
-            check(&format!("thin {roughness:?}, {ior}"), &thin, true);
+    for ior in [1.3, 1.5, 2.4] {
+        let data = glass_scene(ior);
+        for roughness in [0.5, 0.7, 1.0] {
+            let solid = frosted(TINT.0, ior, roughness);
+            let name = format!("solid {roughness}, {ior}");
+            check(&format!("{name}, entering"), &data, &solid, true);
+            check(&format!("{name}, leaving"), &data, &solid, false);
+            let sheet = frosted_sheet(TINT.0, ior, roughness);
+            check(&format!("sheet {roughness}, {ior}"), &data, &sheet, true);
         }
     }
 }
@@ -141,17 +120,15 @@ fn coated_paper() {
             weight: Const(0.4),
         },
     };
-    check("coated paper", &paper, true);
+    check("coated paper", &scene(&[FLOOR]), &paper, true);
 }
 
 /// The moments do see a wrong lobe.
 #[test]
 fn another_lobe_is_told_apart() {
-    let [_, entering] = integrals(&Diffuse { albedo: TINT }, vec3(0.0, 0.0, 1.0), true);
-    let [_, passing] = integrals(
-        &DiffuseTransmission { color: TINT },
-        vec3(0.0, 0.0, 1.0),
-        true,
-    );
+    let data = scene(&[FLOOR]);
+    let up = vec3(0.0, 0.0, 1.0);
+    let [_, entering] = integrals(&data, &Diffuse { albedo: TINT }, up, true);
+    let [_, passing] = integrals(&data, &DiffuseTransmission { color: TINT }, up, true);
     assert!((entering[1] - passing[1]).abs() > 0.5);
 }

@@ -2,7 +2,7 @@
 
 use residual_render::bsdf::{
     Anisotropic, Bsdf, Coated, Dielectric, Diffuse, DiffuseTransmission, Glossy, Isotropic, Mirror,
-    Mix, Phong, RoughDielectric, Sheen, Solid, Sum, Thin, ThinFilm,
+    Mix, Phong, RoughDiffuse, Sheen, Solid, Sum, Thin, ThinFilm,
 };
 use residual_render::domain::{Buffer, Domain, Lanes};
 use residual_render::light::{
@@ -20,7 +20,7 @@ use residual_render::texture::{
 };
 
 use crate::support::agreement::{Formula, any_bits, check, reals, truth, vector, words};
-use crate::support::bsdfs::{metal, plastic};
+use crate::support::bsdfs::{frosted, frosted_sheet, glass_scene, metal, plastic};
 use crate::support::random::Rng;
 use crate::support::scenes::{FLOOR, floor, scene, set_environment, set_lights, set_params};
 
@@ -72,7 +72,7 @@ macro_rules! check_bsdfs {
             let ([a, b, c], [e, f, g], [u, v, w]) = (r.direction(), r.direction(), r.unit3());
             [a as f32, b as f32, c.abs() as f32, e as f32, f as f32, g as f32, u, v, w]
         });
-        check($name, &scene(&[FLOOR]), &This, &inputs);
+        check($name, &glass_scene(1.5), &This, &inputs);
     })*};
 }
 
@@ -93,11 +93,12 @@ fn bsdfs_agree() {
             fresnel: ThinFilm { normal: RED, grazing: Const(1.0), strength: Const(0.8), ior: Const(1.33), thickness: Const(420.0) },
             roughness: Isotropic { roughness: Const(0.2) },
         };
+        "clay" RoughDiffuse { albedo: RED, roughness: Const(0.7) };
         "sheen" Sheen { color: RED, roughness: Const(0.4) };
         "cloth" Coated { coat: Sheen { color: RED, roughness: Const(0.6) }, base: Diffuse { albedo: RED } };
         "paper" DiffuseTransmission { color: RED };
-        "frosted" RoughDielectric { transmittance: RED, ior: Const(1.5), roughness: Isotropic { roughness: Const(0.3) }, interface: Solid };
-        "frosted sheet" RoughDielectric { transmittance: RED, ior: Const(1.4), roughness: Isotropic { roughness: Const(0.5) }, interface: Thin };
+        "frosted" frosted(RED.0, 1.5, 0.3);
+        "frosted sheet" frosted_sheet(RED.0, 1.4, 0.5);
         "solid" Dielectric { transmittance: RED, ior: Const(1.5), interface: Solid };
         "thin" Dielectric { transmittance: RED, ior: Const(1.33), interface: Thin };
         "phong" Phong { color: RED, exponent: Const(40.0) };

@@ -15,6 +15,7 @@ use crate::sixteen_bits;
 /// others stand for (a texel's format, a wrap mode).
 pub fn instead(effect: Effect) -> Option<&'static str> {
     Some(match effect {
+        Effect::RoughDiffuseReflection => "as smooth surfaces reflect",
         Effect::DielectricCoat => "matte",
         Effect::MetallicReflection => "matte, of the same colour",
         Effect::ClearCoat | Effect::Sheen => "without it",
@@ -176,6 +177,9 @@ fn change_surface(effect: Effect, surface: &mut SurfaceDesc) {
         (Effect::Dispersion, SurfaceDesc::MetallicRoughness(surface)) => surface.dispersion = 0.0,
         (Effect::DiffuseTransmission, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.diffuse_transmission = ScalarInput::constant(0.0);
+        }
+        (Effect::RoughDiffuseReflection, SurfaceDesc::MetallicRoughness(surface)) => {
+            surface.diffuse_roughness = ScalarInput::constant(0.0);
         }
         (Effect::CoatNormalMaps, SurfaceDesc::MetallicRoughness(surface)) => {
             surface.clearcoat_normal = None;

@@ -39,6 +39,7 @@ macro_rules! surface_inputs {
                 scattering: _,
                 priority: _,
                 dispersion: _,
+                diffuse_roughness,
                 diffuse_transmission,
                 diffuse_transmission_color,
                 anisotropy,
@@ -60,6 +61,7 @@ macro_rules! surface_inputs {
                     ("specular", Scalar(specular)),
                     ("specular_color", Color(specular_color)),
                     ("transmission", Scalar(transmission)),
+                    ("diffuse_roughness", Scalar(diffuse_roughness)),
                     ("diffuse_transmission", Scalar(diffuse_transmission)),
                     (
                         "diffuse_transmission_color",

@@ -25,6 +25,7 @@ macro_rules! effects {
 
 effects! {
     DiffuseReflection = "diffuse reflection",
+    RoughDiffuseReflection = "rough diffuse reflection",
     DielectricCoat = "dielectric coat",
     MetallicReflection = "metallic reflection",
     ClearCoat = "clear coat",

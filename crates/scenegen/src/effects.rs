@@ -157,7 +157,10 @@ impl Effects {
             BsdfNode::Glossy { fresnel, roughness } => {
                 self.add_facets(Some(fresnel), roughness, place);
             }
-            BsdfNode::RoughDielectric { roughness, .. } => self.add_facets(None, roughness, place),
+            BsdfNode::RoughDielectric { roughness, .. }
+            | BsdfNode::RoughSheet { roughness, .. } => {
+                self.add_facets(None, roughness, place);
+            }
             _ => {}
         }
     }
@@ -233,7 +236,10 @@ fn coat_effect(coat: &BsdfNode, base: &BsdfNode) -> Effect {
 
 fn is_matte(bsdf: &BsdfNode) -> bool {
     match bsdf {
-        BsdfNode::Black | BsdfNode::Diffuse { .. } | BsdfNode::DiffuseTransmission { .. } => true,
+        BsdfNode::Black
+        | BsdfNode::Diffuse { .. }
+        | BsdfNode::RoughDiffuse { .. }
+        | BsdfNode::DiffuseTransmission { .. } => true,
         BsdfNode::Mix { a, b, .. } => is_matte(a) && is_matte(b),
         _ => false,
     }
@@ -244,6 +250,7 @@ fn bsdf_effects(bsdf: &BsdfNode) -> &'static [Effect] {
     match bsdf {
         BsdfNode::Black => &[],
         BsdfNode::Diffuse { .. } => &[Effect::DiffuseReflection],
+        BsdfNode::RoughDiffuse { .. } => &[Effect::RoughDiffuseReflection],
         BsdfNode::DiffuseTransmission { .. } => &[Effect::DiffuseTransmission],
         BsdfNode::Glossy { .. } => &[Effect::MetallicReflection],
         BsdfNode::Sheen { .. } => &[Effect::Sheen],
@@ -252,12 +259,8 @@ fn bsdf_effects(bsdf: &BsdfNode) -> &'static [Effect] {
             AnyInterface::Solid | AnyInterface::SolidAmongSolids => &[Effect::Refraction],
             AnyInterface::Thin => &[Effect::ThinTransmission],
         },
-        BsdfNode::RoughDielectric { interface, .. } => match interface {
-            AnyInterface::Solid | AnyInterface::SolidAmongSolids => {
-                &[Effect::Refraction, Effect::RoughTransmission]
-            }
-            AnyInterface::Thin => &[Effect::ThinTransmission, Effect::RoughTransmission],
-        },
+        BsdfNode::RoughDielectric { .. } => &[Effect::Refraction, Effect::RoughTransmission],
+        BsdfNode::RoughSheet { .. } => &[Effect::ThinTransmission, Effect::RoughTransmission],
         BsdfNode::Phong { .. } => &[Effect::PhongReflection],
         BsdfNode::Mirror { .. } => &[Effect::MirrorReflection],
         BsdfNode::Mix { .. } | BsdfNode::Sum { .. } => &[Effect::MixedLobes],

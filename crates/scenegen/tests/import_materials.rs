@@ -233,6 +233,10 @@ fn layers_are_read() {
             "iridescenceThicknessMaximum": 380,
             "iridescenceThicknessTexture": texture(0),
         },
+        "KHR_materials_diffuse_roughness": {
+            "diffuseRoughnessFactor": 0.8,
+            "diffuseRoughnessTexture": texture(0),
+        },
         "KHR_materials_diffuse_transmission": {
             "diffuseTransmissionFactor": 0.3,
             "diffuseTransmissionTexture": texture(0),
@@ -252,6 +256,7 @@ fn layers_are_read() {
             &surface.iridescence,
             &surface.iridescence_thickness,
             &surface.diffuse_transmission,
+            &surface.diffuse_roughness,
         ]
         .map(|input| (input.factor, channel(input))),
         [
@@ -262,6 +267,7 @@ fn layers_are_read() {
             (0.9, None),
             (380.0, Some(1)),
             (0.3, Some(3)),
+            (0.8, Some(0)),
         ]
     );
     assert_eq!(surface.clearcoat.texture.as_ref().unwrap().0.uv_set, 1);
@@ -275,7 +281,16 @@ fn layers_are_read() {
     assert_eq!(surface.diffuse_transmission_color.factor, [0.9, 0.8, 0.7]);
     // An anisotropic surface needs tangents.
     assert!(scene.meshes[0].tangents.is_some());
-    assert_eq!(scene.warnings, []);
+    // One of them is a draft.
+    let warnings: Vec<_> = scene
+        .warnings
+        .iter()
+        .map(|warning| &warning.message)
+        .collect();
+    assert!(
+        warnings.len() == 1 && warnings[0].starts_with("KHR_materials_diffuse_roughness"),
+        "{warnings:?}"
+    );
 }
 
 #[test]

@@ -238,16 +238,16 @@ fn roughness_and_metalness_are_read() {
     );
     let (_, scene) = material("Pr 0.5\nPs 0.5\nmap_Ps kd.png");
     assert!(
-        warns(&scene, "m", "ps: sheen is not rendered"),
-        "{:?}",
-        scene.warnings
-    );
-    assert!(
         warns(&scene, "m", "not rendered and ignored: map_ps"),
         "{:?}",
         scene.warnings
     );
-    assert_eq!(scene.warnings.len(), 2);
+    assert_eq!(scene.warnings.len(), 1);
+    let cloth = surface("Pr 0.5\nPs 0.4");
+    assert_eq!(
+        (cloth.sheen_color.factor, cloth.sheen_roughness.factor),
+        ([0.4; 3], 0.5)
+    );
 }
 
 #[test]

@@ -1,9 +1,11 @@
 //! What a scene calls for: factors, texels and lights that matter.
 
 use glam::Vec3;
+use residual_render::domain::Buffer;
 use residual_scenegen::desc::{
-    AlphaMode, ColorInput, EnvironmentDesc, Filter, ImageDesc, LightDesc, MaterialDesc, NormalMap,
-    PhongSurface, PunctualKind, ScalarInput, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
+    AlphaMode, Attenuation, ColorInput, EnvironmentDesc, Filter, ImageDesc, LightDesc,
+    MaterialDesc, MetallicRoughness, NormalMap, PhongSurface, PunctualKind, ScalarInput, SceneDesc,
+    SurfaceDesc, Texels, TextureUse, Wrap,
 };
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{PlanOptions, plan};
@@ -75,6 +77,11 @@ const PLACES: &[(Effect, Place)] = &[
         surface.specular = number(factor, texture);
         material("specular", SurfaceDesc::MetallicRoughness(surface))
     }),
+    (Effect::RoughDiffuseReflection, |factor, texture| {
+        let mut surface = metallic_roughness([0.5; 3], 0.0, 0.5);
+        surface.diffuse_roughness = number(factor, texture);
+        material("clay", SurfaceDesc::MetallicRoughness(surface))
+    }),
     (Effect::PhongReflection, |factor, texture| {
         let surface = PhongSurface {
             diffuse: color([0.5; 3]),
@@ -114,6 +121,71 @@ fn a_factor_of_0_takes_an_effect_out_and_its_texture_with_it() {
         }
         let out = effects(WHITE, |_| make(0.0, None), |_| {});
         assert!(!out.contains(effect), "{effect}: {out:?}");
+    }
+}
+
+/// Extensions whose factor is 0, with everything else that they say.
+const SWITCHED_OFF: &[(&str, fn(&mut MetallicRoughness))] = &[
+    ("anisotropy", |surface| surface.anisotropy_rotation = 0.5),
+    ("clear coat", |surface| {
+        surface.clearcoat_roughness = scalar(0.3);
+    }),
+    ("diffuse roughness", |surface| {
+        surface.diffuse_roughness = scalar(0.0);
+    }),
+    ("diffuse transmission", |surface| {
+        surface.diffuse_transmission_color = color([0.9, 0.1, 0.4]);
+    }),
+    ("dispersion of what is opaque", |surface| {
+        surface.dispersion = 3.0
+    }),
+    ("iridescence", |surface| {
+        surface.iridescence_ior = 2.0;
+        surface.iridescence_minimum = 7.0;
+        surface.iridescence_thickness = scalar(300.0);
+    }),
+    ("sheen", |surface| surface.sheen_roughness = scalar(0.7)),
+    ("a volume of what is opaque", |surface| {
+        surface.solid = true;
+        surface.attenuation = Some(Attenuation {
+            color: [0.5; 3],
+            distance: 0.1,
+        });
+    }),
+];
+
+/// A factor of 0 gives the program and the data of a file without the extension, and so the same bits (hard case M-10).
+#[test]
+fn a_factor_of_0_is_the_extensions_absence() {
+    for base in [
+        metallic_roughness([0.5, 0.6, 0.7], 0.0, 0.4),
+        metallic_roughness([0.5, 0.6, 0.7], 0.5, 0.4),
+    ] {
+        let planned = |change: fn(&mut MetallicRoughness)| {
+            let mut surface = base.clone();
+            change(&mut surface);
+            let mut b = Builder::new("sheet");
+            let mesh = sheet([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);
+            b.add(
+                material("sheet", SurfaceDesc::MetallicRoughness(surface)),
+                [mesh],
+            );
+            let position = Vec3::new(0.0, 0.0, 2.0);
+            b.light(PunctualKind::Point { position }, [1.0; 3]);
+            plan(&b.finish(), &PlanOptions::default()).unwrap()
+        };
+        let absent = planned(|_| {});
+        for (extension, change) in SWITCHED_OFF {
+            let off = planned(*change);
+            assert_eq!(off.structure, absent.structure, "{extension}");
+            for buffer in Buffer::ALL {
+                let [a, b] = [&off, &absent].map(|plan| plan.data.buffer(buffer));
+                assert_eq!(a, b, "{extension}, {buffer:?}");
+            }
+        }
+        // It does see an extension that is there.
+        let there = planned(|surface| surface.clearcoat = scalar(1e-3));
+        assert_ne!(there.structure, absent.structure);
     }
 }
 

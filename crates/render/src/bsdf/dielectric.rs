@@ -1,7 +1,7 @@
 //! A smooth dielectric: glass, water, or a thin sheet of either.
 
 use super::fresnel::fresnel;
-use super::interface::{Interface, radiance_scale, relative_ior};
+use super::interface::{Interface, clear_albedo, radiance_scale, relative_ior};
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::{Bundle, Domain};
 use crate::math::vec3::vec3;
@@ -66,10 +66,8 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
 
     #[inline(always)]
     fn albedo(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F> {
-        let (reflectance, _) = fresnel(d, wo.z, self.eta(d, surface));
-        self.transmittance
-            .color(d, surface)
-            .lerp(Vec3::splat(d.lit(1.0)), reflectance)
+        let tint = self.transmittance.color(d, surface);
+        clear_albedo(d, wo.z, self.eta(d, surface), tint)
     }
 
     #[inline(always)]

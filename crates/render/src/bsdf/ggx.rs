@@ -1,7 +1,7 @@
 //! The GGX microfacet distribution with height-correlated Smith masking, as wide along the tangent as across it or not.
 //!
 //! D is evaluated from the half vector's components, never from 1 − cos²θ, which cancels (hard case M-01).
-//! Visible normals are sampled by spherical caps (Dupuy and Benyoub 2023).
+//! Visible normals are sampled by spherical caps (Dupuy and Benyoub 2023), for reflections by smaller ones (Eto and Tokuyoshi 2023).
 
 use crate::domain::Domain;
 use crate::math::Vec3;
@@ -66,10 +66,53 @@ impl<F: crate::domain::Real> Ggx<F> {
     /// A normal visible from `wo`.
     #[inline(always)]
     pub fn sample_visible_normal<D: Domain<F = F>>(&self, d: D, wo: Vec3<F>, u: [F; 2]) -> Vec3<F> {
+        let stretched = self.stretched(wo).normalize(d);
+        self.sample_cap(d, stretched, stretched.z, u)
+    }
+
+    /// A normal visible from `wo`, of those that may reflect light from above the surface: others are left out as far as a
+    /// bound on them knows (Eto and Tokuyoshi 2023, "Bounded VNDF sampling for Smith–GGX reflections").
+    #[inline(always)]
+    pub fn sample_reflecting_normal<D: Domain<F = F>>(
+        &self,
+        d: D,
+        wo: Vec3<F>,
+        u: [F; 2],
+    ) -> Vec3<F> {
+        let stretched = self.stretched(wo).normalize(d);
+        self.sample_cap(d, stretched, self.bound(d, wo) * stretched.z, u)
+    }
+
+    /// A direction as it is where facets are turned evenly.
+    #[inline(always)]
+    fn stretched(&self, w: Vec3<F>) -> Vec3<F> {
+        vec3(w.x * self.alpha[0], w.y * self.alpha[1], w.z)
+    }
+
+    /// How deep the cap of mirrored directions reaches that [`sample_reflecting_normal`](Self::sample_reflecting_normal) draws
+    /// from, as a part of the whole.
+    #[inline(always)]
+    fn bound<D: Domain<F = F>>(&self, d: D, wo: Vec3<F>) -> F {
         let one = d.lit(1.0);
-        let stretched = vec3(wo.x * self.alpha[0], wo.y * self.alpha[1], wo.z).normalize(d);
+        let across = one + d.sqrt(d.fma(wo.x, wo.x, wo.y * wo.y));
+        let across2 = across * across;
+        let alpha = d.min(d.min(self.alpha[0], self.alpha[1]), one);
+        let alpha2 = alpha * alpha;
+        (one - alpha2) * across2 / d.fma(alpha2 * wo.z, wo.z, across2)
+    }
+
+    /// A normal halfway between a stretched direction and one of those above −`depth`, uniformly.
+    #[inline(always)]
+    fn sample_cap<D: Domain<F = F>>(
+        &self,
+        d: D,
+        stretched: Vec3<F>,
+        depth: F,
+        u: [F; 2],
+    ) -> Vec3<F> {
+        let one = d.lit(1.0);
         let (sin, cos) = sincos_turns(d, u[0]);
-        let z = d.fma(one - u[1], one + stretched.z, -stretched.z);
+        let z = d.fma(one - u[1], one + depth, -depth);
         let r = d.sqrt(d.max(one - z * z, d.lit(0.0)));
         let cap = vec3(
             d.fma(r, cos, stretched.x),
@@ -104,6 +147,41 @@ impl<F: crate::domain::Real> Ggx<F> {
             d.select(above, value, zero),
             d.select(above, common / out, zero),
         )
+    }
+
+    /// The same, and the density of sampling by [`sample_reflecting_normal`](Self::sample_reflecting_normal).
+    #[inline(always)]
+    pub fn bounded_reflection<D: Domain<F = F>>(
+        &self,
+        d: D,
+        wo: Vec3<F>,
+        wi: Vec3<F>,
+        h: Vec3<F>,
+    ) -> (F, F) {
+        let zero = d.lit(0.0);
+        let above = d.lt(zero, wo.z) & d.lt(zero, wi.z);
+        let distribution = self.distribution(d, h);
+        let masking = d.lit(1.0) + self.lambda(d, wo) + self.lambda(d, wi);
+        let value = distribution / (d.lit(4.0) * d.max(wo.z, d.lit(1e-9)) * masking);
+        let density = distribution / (d.lit(2.0) * self.bounded_area(d, wo));
+        (d.select(above, value, zero), d.select(above, density, zero))
+    }
+
+    /// The weight of a reflection by [`sample_reflecting_normal`](Self::sample_reflecting_normal) ÷ Fresnel.
+    #[inline(always)]
+    pub fn bounded_weight<D: Domain<F = F>>(&self, d: D, wo: Vec3<F>, wi: Vec3<F>) -> F {
+        let masking = d.lit(1.0) + self.lambda(d, wo) + self.lambda(d, wi);
+        let facing = d.lit(2.0) * d.max(wo.z, d.lit(1e-9));
+        let weight = self.bounded_area(d, wo) / (facing * masking);
+        d.select(d.lt(d.lit(0.0), wi.z), weight, d.lit(0.0))
+    }
+
+    /// Twice the projected area of what [`sample_reflecting_normal`](Self::sample_reflecting_normal) draws from.
+    #[inline(always)]
+    fn bounded_area<D: Domain<F = F>>(&self, d: D, wo: Vec3<F>) -> F {
+        let stretched = self.stretched(wo);
+        let length = d.sqrt(stretched.dot(d, stretched));
+        d.max(d.fma(self.bound(d, wo), wo.z, length), d.lit(1e-9))
     }
 
     /// G₂/G₁: the weight of a sampled reflection ÷ Fresnel.

@@ -26,7 +26,7 @@ impl<D: Domain, F: Fresnel<D>, R: Roughness<D>> Bsdf<D> for Glossy<F, R> {
         let ggx = self.roughness.microfacets(d, surface);
         let sum = wo + wi;
         let h = sum.normalize_any(d);
-        let (value, pdf) = ggx.reflection(d, wo, wi, h);
+        let (value, pdf) = ggx.bounded_reflection(d, wo, wi, h);
         let fresnel = self.fresnel.reflectance(d, surface, half_cosine(d, sum, h));
         let curve = self.fresnel.curve(d, surface, wo.z);
         let all = DirectionalAlbedo::new(d, &ggx, wo.z).compensation(d, &curve);
@@ -39,15 +39,15 @@ impl<D: Domain, F: Fresnel<D>, R: Roughness<D>> Bsdf<D> for Glossy<F, R> {
     #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         let ggx = self.roughness.microfacets(d, surface);
-        let h = ggx.sample_visible_normal(d, wo, [u[0], u[1]]);
+        let h = ggx.sample_reflecting_normal(d, wo, [u[0], u[1]]);
         let wi = reflect(d, wo, h);
         let fresnel = self.fresnel.reflectance(d, surface, d.abs(wo.dot(d, h)));
         let curve = self.fresnel.curve(d, surface, wo.z);
         let all = DirectionalAlbedo::new(d, &ggx, wo.z).compensation(d, &curve);
-        let (_, pdf) = ggx.reflection(d, wo, wi, h);
+        let (_, pdf) = ggx.bounded_reflection(d, wo, wi, h);
         BsdfSample {
             wi,
-            weight: (fresnel * all).scale(ggx.sample_weight(d, wo, wi)),
+            weight: (fresnel * all).scale(ggx.bounded_weight(d, wo, wi)),
             pdf,
             delta: d.truth(false),
         }

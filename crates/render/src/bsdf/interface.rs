@@ -1,6 +1,8 @@
 //! What lies behind a transmitting surface: a body, or nothing.
 
+use super::fresnel::fresnel;
 use crate::domain::Domain;
+use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 
 /// What lies behind the surface.
@@ -123,4 +125,17 @@ pub(super) fn radiance_scale<D: Domain>(
         };
         d.select(inside, ior * ior, around)
     })
+}
+
+/// What a surface that absorbs nothing but by its tint seems to be coloured: what it reflects at an angle of this cosine, and
+/// the tint of what passes.
+#[inline(always)]
+pub(super) fn clear_albedo<D: Domain>(
+    d: D,
+    cos: D::F,
+    eta: D::F,
+    tint: Color<D::F>,
+) -> Color<D::F> {
+    let (reflectance, _) = fresnel(d, cos, eta);
+    tint.lerp(Vec3::splat(d.lit(1.0)), reflectance)
 }

@@ -7,6 +7,8 @@
 //! To add a BSDF: write one file with a struct generic over its sources, implement [`Bsdf`], and give it a row in the
 //! node table (`program/nodes.rs`).
 
+mod albedo_table;
+mod azimuth;
 mod coated;
 mod combine;
 mod dielectric;
@@ -22,6 +24,8 @@ mod mirror;
 mod own_normal;
 mod phong;
 mod rough_dielectric;
+mod rough_diffuse;
+mod rough_sheet;
 mod roughness;
 mod sheen;
 mod thin_film;
@@ -39,7 +43,9 @@ pub use interface::{AnyInterface, Interface, Solid, SolidAmongSolids, Thin};
 pub use mirror::Mirror;
 pub use own_normal::{LayerFrame, MappedFrame, MeshFrame, OwnNormal};
 pub use phong::Phong;
-pub use rough_dielectric::RoughDielectric;
+pub use rough_dielectric::{RoughDielectric, rough_dielectric_albedos};
+pub use rough_diffuse::RoughDiffuse;
+pub use rough_sheet::RoughSheet;
 pub use roughness::{Anisotropic, Isotropic, Roughness};
 pub use sheen::Sheen;
 pub use thin_film::ThinFilm;

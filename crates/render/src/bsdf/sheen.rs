@@ -1,5 +1,6 @@
 //! Sheen of cloth: light that fibres scatter towards grazing angles.
 
+use super::azimuth::Azimuth;
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::Domain;
 use crate::math::elementary::exp2;
@@ -32,8 +33,7 @@ struct Lobe<D: Domain> {
     /// The inverse of the transformation: x' = a·x + b·z, y' = a·y, z' = z, where `wo` has no y.
     a: D::F,
     b: D::F,
-    /// The direction of `wo` in the plane of the surface.
-    azimuth: [D::F; 2],
+    azimuth: Azimuth<D::F>,
 }
 
 impl<D: Domain> Lobe<D> {
@@ -71,27 +71,19 @@ impl<D: Domain> Lobe<D> {
         let b = d.fma(lit(1.341_74) * y, y, d.fma(lit(-1.715_06), xy, b));
         let b = d.sqrt(one - x) * (y - one) * y * y * y / b;
 
-        let across = d.sqrt(d.fma(wo.x, wo.x, wo.y * wo.y));
-        let slanted = d.lt(lit(1e-6), across);
-        let inverse = one / d.select(slanted, across, one);
         Self {
             albedo: d.min(d.max(albedo, lit(0.0)), one),
             a,
             b,
-            azimuth: [
-                d.select(slanted, wo.x * inverse, one),
-                d.select(slanted, wo.y * inverse, lit(0.0)),
-            ],
+            azimuth: Azimuth::of(d, wo),
         }
     }
 
     /// Density per steradian, cosine included; its integral over the directions above is 1.
     #[inline(always)]
     fn density(&self, d: D, wi: Vec3<D::F>) -> D::F {
-        let [cos, sin] = self.azimuth;
-        let along = d.fma(wi.x, cos, wi.y * sin);
-        let across = d.fma(wi.y, cos, -(wi.x * sin));
-        let original = vec3(d.fma(self.a, along, self.b * wi.z), self.a * across, wi.z);
+        let seen = self.azimuth.turned(d, wi);
+        let original = vec3(d.fma(self.a, seen.x, self.b * wi.z), self.a * seen.y, wi.z);
         let ratio = self.a / original.dot(d, original);
         d.max(wi.z, d.lit(0.0)) * d.lit(FRAC_1_PI) * ratio * ratio
     }
@@ -100,14 +92,8 @@ impl<D: Domain> Lobe<D> {
     fn sample(&self, d: D, u: [D::F; 2]) -> Vec3<D::F> {
         let w = cosine_hemisphere(d, u);
         let along = d.fma(-w.z, self.b, w.x) / self.a;
-        let across = w.y / self.a;
-        let [cos, sin] = self.azimuth;
-        vec3(
-            d.fma(along, cos, -(across * sin)),
-            d.fma(along, sin, across * cos),
-            w.z,
-        )
-        .normalize_any(d)
+        let local = vec3(along, w.y / self.a, w.z);
+        self.azimuth.turned_back(d, local).normalize_any(d)
     }
 }
 

@@ -21,6 +21,7 @@ nodes! {
     BsdfNode: Bsdf in bsdf {
         Black,
         Diffuse { albedo: Input },
+        RoughDiffuse { albedo: Input, roughness: Input },
         DiffuseTransmission { color: Input },
         Glossy { fresnel: FresnelNode, roughness: RoughnessNode },
         Sheen { color: Input, roughness: Input },
@@ -32,7 +33,9 @@ nodes! {
             ior: Input,
             roughness: RoughnessNode,
             interface: AnyInterface,
+            albedos: u32,
         },
+        RoughSheet { transmittance: Input, ior: Input, roughness: RoughnessNode },
         Phong { color: Input, exponent: Input },
         Mirror { reflectance: Input },
         Mix { a: Box<BsdfNode>, b: Box<BsdfNode>, weight: Input },

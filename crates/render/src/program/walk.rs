@@ -5,7 +5,6 @@ use super::nodes::{
     ScalarNode,
 };
 use super::{Program, SourceNode};
-use crate::bsdf::AnyInterface;
 use crate::surface::Attributes;
 use crate::texture::{AnyFilter, UvMap};
 
@@ -143,17 +142,6 @@ impl Program {
 }
 
 impl BsdfNode {
-    /// Whether the surface is that of a body, into which light is bent.
-    pub fn encloses(&self) -> bool {
-        let interface = match self {
-            Self::Dielectric { interface, .. } | Self::RoughDielectric { interface, .. } => {
-                Some(*interface)
-            }
-            _ => None,
-        };
-        interface == Some(AnyInterface::Solid) || self.children().any(Self::encloses)
-    }
-
     /// The BSDFs that it combines.
     pub fn children(&self) -> impl Iterator<Item = &Self> {
         let fields = self.literal().fields.into_iter();
@@ -181,6 +169,7 @@ impl BsdfNode {
             self,
             Self::Dielectric { .. }
                 | Self::RoughDielectric { .. }
+                | Self::RoughSheet { .. }
                 | Self::DiffuseTransmission { .. }
         ) || self.children().any(Self::transmits)
     }

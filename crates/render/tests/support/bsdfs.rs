@@ -1,9 +1,16 @@
 //! White BSDFs, and directions to see them from.
 
-use residual_render::bsdf::{Coated, Diffuse, Glossy, Isotropic, Phong, Schlick};
+use residual_render::bsdf::{
+    Coated, Diffuse, Glossy, Isotropic, Phong, RoughDielectric, RoughSheet, Schlick, Solid,
+    rough_dielectric_albedos,
+};
+use residual_render::domain::Buffer;
 use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
+use residual_render::scene_data::SceneData;
 use residual_render::texture::Const;
+
+use super::scenes::{FLOOR, scene};
 
 pub(crate) type White = Const<[f32; 3]>;
 
@@ -55,6 +62,42 @@ pub(crate) fn phong(exponent: f32) -> Phong<White, Const<f32>> {
         color: WHITE,
         exponent: Const(exponent),
     }
+}
+
+/// A body of frosted glass.
+pub(crate) type Frosted = RoughDielectric<White, Const<f32>, Isotropic<Const<f32>>, Solid>;
+
+/// A pane of frosted glass.
+pub(crate) type FrostedSheet = RoughSheet<White, Const<f32>, Isotropic<Const<f32>>>;
+
+pub(crate) fn frosted(tint: [f32; 3], ior: f32, roughness: f32) -> Frosted {
+    RoughDielectric {
+        transmittance: Const(tint),
+        ior: Const(ior),
+        roughness: Isotropic {
+            roughness: Const(roughness),
+        },
+        interface: Solid,
+        albedos: 0,
+    }
+}
+
+pub(crate) fn frosted_sheet(tint: [f32; 3], ior: f32, roughness: f32) -> FrostedSheet {
+    RoughSheet {
+        transmittance: Const(tint),
+        ior: Const(ior),
+        roughness: Isotropic {
+            roughness: Const(roughness),
+        },
+    }
+}
+
+/// A floor, whose parameters are the albedos of [`frosted`] glass of this index of refraction.
+pub(crate) fn glass_scene(ior: f32) -> SceneData {
+    let mut data = scene(&[FLOOR]);
+    let albedos = rough_dielectric_albedos(ior);
+    *data.buffer_mut(Buffer::Params) = albedos.into_iter().map(f32::to_bits).collect();
+    data
 }
 
 /// A unit vector above the surface.

@@ -5,6 +5,7 @@ pub(crate) mod alias;
 pub(crate) mod bsdfs;
 pub(crate) mod irradiance;
 pub(crate) mod random;
+pub(crate) mod sampling;
 pub(crate) mod scenes;
 pub(crate) mod stats;
 

@@ -15,7 +15,7 @@ use residual_render::tracer::MediumRecord;
 use residual_render::triangle::TriangleRecord;
 
 /// Words of a triangle's parameters.
-pub(crate) const BLOCK: u32 = 64;
+pub(crate) const BLOCK: u32 = ALBEDOS + 3584;
 /// In a block: an image's slot.
 pub(crate) const IMAGE: u32 = 48;
 /// In a block: the medium behind a surface.
@@ -24,6 +24,8 @@ pub(crate) const MEDIUM: u32 = 60;
 pub(crate) const MEDIA: u32 = 32;
 /// In a block: a texture's transform.
 pub(crate) const TRANSFORM: u32 = 52;
+/// In a block: albedos of a rough dielectric.
+pub(crate) const ALBEDOS: u32 = 64;
 /// How many triangles there are.
 pub(crate) const TRIANGLES: u32 = 4;
 

@@ -70,12 +70,10 @@ fn bsdfs_with_parameters() {
 #[test]
 fn bsdfs_with_constants() {
     for bsdf in bsdfs() {
+        let has_table = matches!(bsdf, BsdfNode::RoughDielectric { .. });
         let function = check(&AtHit(program(bsdf, inputs(true))));
-        assert_eq!(
-            loads(&function, Buffer::Params),
-            0,
-            "constants are not loaded"
-        );
+        let loads = loads(&function, Buffer::Params);
+        assert_eq!(loads > 0, has_table, "constants are not loaded");
     }
 }
 

@@ -11,7 +11,7 @@ use residual_render::surface::Attributes;
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, Input, UvMap};
 use residual_render::tracer::{Between, TracerNode};
 
-use crate::common::{IMAGE, Random, TRANSFORM, TRIANGLES};
+use crate::common::{ALBEDOS, IMAGE, Random, TRANSFORM, TRIANGLES};
 
 pub(crate) fn hit_arguments(random: &mut Random) -> (Vec<f32>, Vec<u32>) {
     let (u, v) = (random.unit(), random.unit());
@@ -75,6 +75,10 @@ pub(crate) fn inputs(constant: bool) -> Vec<InputNode> {
 pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     let [first, second, third, fourth, fifth] = [0, 1, 2, 3, 4].map(Input);
     let diffuse = BsdfNode::Diffuse { albedo: first };
+    let clay = BsdfNode::RoughDiffuse {
+        albedo: first,
+        roughness: third,
+    };
     let isotropic = RoughnessNode::Isotropic { roughness: third };
     let schlick = FresnelNode::Schlick {
         normal: second,
@@ -120,6 +124,12 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         ior: fourth,
         roughness: isotropic.clone(),
         interface,
+        albedos: ALBEDOS,
+    };
+    let frosted_sheet = BsdfNode::RoughSheet {
+        transmittance: first,
+        ior: fourth,
+        roughness: isotropic.clone(),
     };
     let glass = |interface| BsdfNode::Dielectric {
         transmittance: first,
@@ -146,6 +156,7 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     vec![
         BsdfNode::Black,
         diffuse.clone(),
+        clay,
         conductor.clone(),
         coated.clone(),
         glass(AnyInterface::Solid),
@@ -160,7 +171,9 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         coat(&sheen, &coated),
         coat(&conductor, &mix(&diffuse, &paper)),
         frosted(AnyInterface::Solid),
-        frosted(AnyInterface::Thin),
+        frosted(AnyInterface::SolidAmongSolids),
+        glass(AnyInterface::SolidAmongSolids),
+        frosted_sheet,
         sum(&diffuse, &mirror),
         mix(&coated, &conductor),
         mix(&coated, &glass(AnyInterface::Thin)),

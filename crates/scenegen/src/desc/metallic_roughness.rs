@@ -30,6 +30,8 @@ pub struct MetallicRoughness {
     pub priority: i32,
     /// KHR_materials_dispersion: 20 over the Abbe number; 0 bends all wavelengths alike.
     pub dispersion: f32,
+    /// KHR_materials_diffuse_roughness: how rough the diffuse reflection is (red channel).
+    pub diffuse_roughness: ScalarInput,
     /// KHR_materials_diffuse_transmission: the share of the diffuse light that passes (alpha channel).
     pub diffuse_transmission: ScalarInput,
     /// KHR_materials_diffuse_transmission: its colour.
@@ -93,6 +95,7 @@ impl Default for MetallicRoughness {
             scattering: None,
             priority: 0,
             dispersion: 0.0,
+            diffuse_roughness: ScalarInput::constant(0.0),
             diffuse_transmission: ScalarInput::constant(0.0),
             diffuse_transmission_color: ColorInput::constant([1.0; 3]),
             anisotropy: ScalarInput::constant(0.0),

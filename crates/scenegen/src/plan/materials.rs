@@ -13,6 +13,7 @@ use super::options::{CullingRule, PlanOptions};
 use super::planned::MaterialUse;
 use super::planned_materials::{Materials, PlannedMaterial};
 use super::program::Builder;
+use super::rough_dielectrics::RoughDielectrics;
 use super::sources::Sources;
 use crate::desc::{SceneDesc, SurfaceDesc};
 
@@ -31,6 +32,7 @@ pub(super) fn plan_materials(
     let seen: Vec<_> = available.iter().map(Option::is_some).collect();
     let closed = Closed::of(scene);
     let media = Media::of(scene, &seen, &closed, options.bodies);
+    let mut rough_dielectrics = RoughDielectrics::default();
     for (material, available) in available.into_iter().enumerate() {
         let Some(available) = available else { continue };
         let desc = &scene.materials[material];
@@ -43,6 +45,7 @@ pub(super) fn plan_materials(
             // for sheets, and other offline renderers (Cycles, Mitsuba) refract as well.
             encloses: closed.materials[material] && transmits(&desc.surface),
             nesting: media.nesting(),
+            rough_dielectrics: &mut rough_dielectrics,
         };
         let opacity = builder.opacity(desc);
         if opacity == Opacity::Transparent {

@@ -133,12 +133,23 @@ impl Builder<'_> {
             return self.smooth_dielectric(tint, ior, interface);
         }
         let ior = surface.ior.max(LEAST_ROUGH_IOR);
-        let ior = self.refraction(surface, ior, interface);
-        BsdfNode::RoughDielectric {
-            transmittance: self.color("transmittance", tint),
-            ior: self.scalar("ior", ior),
-            roughness: self.roughness(surface),
-            interface,
+        let node = self.refraction(surface, ior, interface);
+        let transmittance = self.color("transmittance", tint);
+        let node = self.scalar("ior", node);
+        let roughness = self.roughness(surface);
+        match interface {
+            AnyInterface::Solid | AnyInterface::SolidAmongSolids => BsdfNode::RoughDielectric {
+                transmittance,
+                ior: node,
+                roughness,
+                interface,
+                albedos: self.sources.table(self.rough_dielectrics.albedos(ior)),
+            },
+            AnyInterface::Thin => BsdfNode::RoughSheet {
+                transmittance,
+                ior: node,
+                roughness,
+            },
         }
     }
 
@@ -193,7 +204,7 @@ impl Builder<'_> {
 
     /// `mix(reflected, transmitted, diffuse transmission)`.
     fn matte(&mut self, surface: &MetallicRoughness, albedo: ColorNode) -> BsdfNode {
-        let reflected = self.diffuse(albedo);
+        let reflected = self.rough_diffuse(surface, albedo);
         let share = self.sources.scalar(&surface.diffuse_transmission);
         if share == ZERO {
             return reflected;
@@ -212,6 +223,17 @@ impl Builder<'_> {
             a: Box::new(reflected),
             b: Box::new(transmitted),
             weight: self.scalar("diffuse_transmission", share),
+        }
+    }
+
+    fn rough_diffuse(&mut self, surface: &MetallicRoughness, albedo: ColorNode) -> BsdfNode {
+        let roughness = self.sources.scalar(&surface.diffuse_roughness);
+        if roughness == ZERO || is_black(&albedo) {
+            return self.diffuse(albedo);
+        }
+        BsdfNode::RoughDiffuse {
+            albedo: self.color("albedo", albedo),
+            roughness: self.scalar("diffuse_roughness", roughness),
         }
     }
 

@@ -30,6 +30,7 @@ mod options;
 mod planned;
 mod planned_materials;
 mod program;
+mod rough_dielectrics;
 mod sources;
 
 use glam::DVec3;

@@ -8,6 +8,7 @@ use residual_render::texture::Input;
 use residual_render::tracer::AnyNesting;
 
 use super::opacity::Opacity;
+use super::rough_dielectrics::RoughDielectrics;
 use super::sources::Sources;
 use crate::desc::{MaterialDesc, NormalMap, SurfaceDesc};
 use crate::effect::Effect;
@@ -20,6 +21,7 @@ pub(super) struct Builder<'a> {
     pub(super) encloses: bool,
     /// How bodies lie to each other.
     pub(super) nesting: AnyNesting,
+    pub(super) rough_dielectrics: &'a mut RoughDielectrics,
 }
 
 impl Builder<'_> {

@@ -118,6 +118,13 @@ impl<'a> Sources<'a> {
         offset
     }
 
+    /// Numbers, always parameters; their first one's offset.
+    pub(super) fn table(&mut self, numbers: &[f32]) -> u32 {
+        let offset = self.params.len() as u32;
+        self.params.extend(numbers.iter().map(|x| x.to_bits()));
+        offset
+    }
+
     /// A number: 0 and 1 are always constants, since they remove code.
     pub(super) fn number(&mut self, value: f32) -> ScalarNode {
         if value == 0.0 || value == 1.0 || self.binding == Binding::Constants {

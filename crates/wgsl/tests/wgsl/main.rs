@@ -31,6 +31,7 @@ fn every_bsdf() {
 fn every_bsdf_with_constants() {
     for (c, s) in [(0.0, 0.0), (1.0, 1.0), (0.25, 0.5), (1.0, 1.5)] {
         for bsdf in bsdfs() {
+            let has_table = matches!(bsdf, BsdfNode::RoughDielectric { .. });
             let mut program = program(bsdf);
             program.inputs = vec![
                 color("first", ColorNode::Const([c; 3])),
@@ -41,7 +42,7 @@ fn every_bsdf_with_constants() {
             let text = scene_module(&structure(vec![program], vec![]));
             no_dead_code(&text);
             assert!(
-                !text.contains("bases.params"),
+                has_table || !text.contains("bases.params"),
                 "constants are not loaded\n{text}"
             );
         }

@@ -60,6 +60,10 @@ pub(crate) fn structure(programs: Vec<Program>, lights: Vec<LightNode>) -> Struc
 pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     let [first, second, third, fourth] = [0, 1, 2, 3].map(Input);
     let diffuse = BsdfNode::Diffuse { albedo: first };
+    let clay = BsdfNode::RoughDiffuse {
+        albedo: first,
+        roughness: third,
+    };
     let isotropic = RoughnessNode::Isotropic { roughness: third };
     let schlick = FresnelNode::Schlick {
         normal: second,
@@ -105,6 +109,12 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         ior: fourth,
         roughness: isotropic.clone(),
         interface,
+        albedos: 8,
+    };
+    let frosted_sheet = BsdfNode::RoughSheet {
+        transmittance: first,
+        ior: fourth,
+        roughness: isotropic.clone(),
     };
     let glass = |interface| BsdfNode::Dielectric {
         transmittance: first,
@@ -122,6 +132,7 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
     vec![
         BsdfNode::Black,
         diffuse.clone(),
+        clay,
         conductor.clone(),
         coated.clone(),
         coat(&own(LayerFrameNode::MeshFrame), &conductor),
@@ -130,7 +141,9 @@ pub(crate) fn bsdfs() -> Vec<BsdfNode> {
         coat(&sheen, &coated),
         paper,
         frosted(AnyInterface::Solid),
-        frosted(AnyInterface::Thin),
+        frosted(AnyInterface::SolidAmongSolids),
+        glass(AnyInterface::SolidAmongSolids),
+        frosted_sheet,
         glass(AnyInterface::Solid),
         glass(AnyInterface::Thin),
         phong.clone(),

@@ -32,6 +32,7 @@ impl Support {
             | "KHR_lights_punctual"
             | "KHR_materials_anisotropy"
             | "KHR_materials_clearcoat"
+            | "KHR_materials_diffuse_roughness"
             | "KHR_materials_diffuse_transmission"
             | "KHR_materials_dispersion"
             | "KHR_materials_emissive_strength"

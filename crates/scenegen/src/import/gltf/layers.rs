@@ -16,6 +16,17 @@ pub(super) fn read(
     members: &mut Members<'_, '_>,
 ) -> Result<MetallicRoughness, Fault> {
     let of = |name| ExtensionMembers::of(extensions, name);
+    if let Some(extension) = of("KHR_materials_diffuse_roughness") {
+        surface.diffuse_roughness = extension.scalar(
+            members,
+            ["diffuseRoughnessFactor", "diffuseRoughnessTexture"],
+            (0.0..=1.0, 0.0),
+            0,
+        )?;
+        if surface.diffuse_roughness.factor > 0.0 {
+            members.warn("KHR_materials_diffuse_roughness is a draft, which may change".to_owned());
+        }
+    }
     if let Some(extension) = of("KHR_materials_diffuse_transmission") {
         surface.diffuse_transmission = extension.scalar(
             members,
@@ -127,6 +138,11 @@ fn dismiss_without_effect(
     members: &mut Members<'_, '_>,
 ) {
     let switches = [
+        (
+            "KHR_materials_diffuse_roughness",
+            Effect::RoughDiffuseReflection,
+            surface.diffuse_roughness.factor,
+        ),
         (
             "KHR_materials_diffuse_transmission",
             Effect::DiffuseTransmission,

@@ -14,6 +14,9 @@ use crate::desc::{
 /// Reflectance where a file gives none.
 const GREY: f32 = 0.8;
 
+/// How rough sheen is, of which files say no more than how strong it is.
+const SHEEN_ROUGHNESS: f32 = 0.5;
+
 /// The index of refraction where a file gives none.
 const DEFAULT_IOR: f32 = 1.5;
 
@@ -134,10 +137,7 @@ fn opaque_surface(inputs: &mut Inputs<'_, '_>, illumination: Illumination) -> Su
 /// are there for programs that do not know them.
 fn metallic_roughness(inputs: &mut Inputs<'_, '_>, base_color: ColorInput) -> SurfaceDesc {
     inputs.statements.dismiss(&["ks", "map_ks", "ns", "map_ns"]);
-    let sheen = inputs.statements.number("ps").unwrap_or_default();
-    if sheen != 0.0 {
-        inputs.statements.warn("ps: sheen is not rendered");
-    }
+    let sheen = inputs.fraction("ps").unwrap_or_default();
     let rotation = inputs.statements.number("anisor").unwrap_or_default();
     // 1 is written for every material.
     let ior = match ior(inputs) {
@@ -152,6 +152,8 @@ fn metallic_roughness(inputs: &mut Inputs<'_, '_>, base_color: ColorInput) -> Su
         anisotropy: inputs.fraction_input("aniso", "map_aniso", 0.0),
         // In turns.
         anisotropy_rotation: rotation * std::f32::consts::TAU,
+        sheen_color: ColorInput::constant([sheen; 3]),
+        sheen_roughness: ScalarInput::constant(SHEEN_ROUGHNESS),
         clearcoat: inputs.fraction_input("pc", "map_pc", 0.0),
         clearcoat_roughness: inputs.fraction_input("pcr", "map_pcr", 0.0),
         ..MetallicRoughness::default()
