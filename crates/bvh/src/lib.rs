@@ -167,6 +167,7 @@ mod dispatch;
 mod filter;
 mod instances;
 mod layout;
+mod look_up;
 mod precision;
 mod ray;
 mod simd;

@@ -6,7 +6,11 @@
 //! cracks.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x4, f32x8, f32x16, i16x16, mask32x4, mask32x8, mask32x16, u8x16, u16x16};
+use fearless_simd::{f32x4, f32x8, f32x16, mask32x4, mask32x8, mask32x16, u8x16};
+
+use crate::look_up::{
+    high_bits, high_bits_4, high_bits_8, high_bits_16, look_up, look_up_4, look_up_8, look_up_16,
+};
 
 /// `N` lanes of `f32` on the instruction set that the token `Self` stands for; `N` is 1, 2, 4, 8
 /// or 16.
@@ -226,105 +230,8 @@ fn load_bytes_16<S: fearless_simd::Simd>(simd: S, array: &[u8; 16]) -> f32x16<S>
     f32x16::load_array(simd, array.map(f32::from))
 }
 
-/// Four rows of four numbers, as columns.
-#[inline(always)]
-pub(crate) fn transposed<S: fearless_simd::Simd>(simd: S, rows: [[f32; 4]; 4]) -> [[f32; 4]; 4] {
-    let [a, b, c, d] = rows;
-    let row = |row: [f32; 4]| f32x4::load_array(simd, row);
-    let (a, b, c, d) = (row(a), row(b), row(c), row(d));
-    let (low, high) = ((a.zip_low(c), b.zip_low(d)), (a.zip_high(c), b.zip_high(d)));
-    [
-        low.0.zip_low(low.1).into(),
-        low.0.zip_high(low.1).into(),
-        high.0.zip_low(high.1).into(),
-        high.0.zip_high(high.1).into(),
-    ]
-}
-
-#[inline(always)]
-fn look_up<S: Width<N>, const N: usize>(
-    simd: S,
-    tables: [S::Float; 3],
-    indices: &[u16; N],
-) -> [[S::Float; 3]; 3] {
-    let tables = tables.map(|table| Stored::of(simd, table).0);
-    [0, 4, 8].map(|shift| {
-        tables.each_ref().map(|table| {
-            simd.load(&indices.map(|index| table[usize::from(index >> shift & 15) % N]))
-        })
-    })
-}
-
-#[inline(always)]
-fn look_up_16<S: fearless_simd::Simd>(
-    simd: S,
-    [x, y, z]: [f32x16<S>; 3],
-    indices: &[u16; 16],
-) -> [[f32x16<S>; 3]; 3] {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(avx512) = simd.level().as_avx512() {
-        let number = |table: f32x16<S>| f32x16::load_array(avx512, table.into());
-        let indices = u16x16::load_array(avx512, *indices);
-        let [a, b, c] = permute(avx512, number(x), number(y), number(z), indices);
-        let number = |found: f32x16<fearless_simd::Avx512>| f32x16::load_array(simd, found.into());
-        let corner =
-            |[x, y, z]: [f32x16<fearless_simd::Avx512>; 3]| [number(x), number(y), number(z)];
-        return [corner(a), corner(b), corner(c)];
-    }
-    look_up(simd, [x, y, z], indices)
-}
-
-// Written out, since calls of closures would be calls.
-#[cfg(target_arch = "x86_64")]
-fearless_simd::kernel!(
-    #[inline(always)]
-    fn permute(
-        avx512: Avx512,
-        x: f32x16<fearless_simd::Avx512>,
-        y: f32x16<fearless_simd::Avx512>,
-        z: f32x16<fearless_simd::Avx512>,
-        indices: u16x16<fearless_simd::Avx512>,
-    ) -> [[f32x16<fearless_simd::Avx512>; 3]; 3] {
-        use std::arch::x86_64::{_mm512_cvtepu16_epi32, _mm512_permutexvar_ps, _mm512_srli_epi32};
-        // Of each index the instruction uses the four lowest bits.
-        let first = _mm512_cvtepu16_epi32(indices.into());
-        let second = _mm512_srli_epi32::<4>(first);
-        let third = _mm512_srli_epi32::<8>(first);
-        let (x, y, z) = (x.into(), y.into(), z.into());
-        [
-            [
-                _mm512_permutexvar_ps(first, x).simd_into(avx512),
-                _mm512_permutexvar_ps(first, y).simd_into(avx512),
-                _mm512_permutexvar_ps(first, z).simd_into(avx512),
-            ],
-            [
-                _mm512_permutexvar_ps(second, x).simd_into(avx512),
-                _mm512_permutexvar_ps(second, y).simd_into(avx512),
-                _mm512_permutexvar_ps(second, z).simd_into(avx512),
-            ],
-            [
-                _mm512_permutexvar_ps(third, x).simd_into(avx512),
-                _mm512_permutexvar_ps(third, y).simd_into(avx512),
-                _mm512_permutexvar_ps(third, z).simd_into(avx512),
-            ],
-        ]
-    }
-);
-
-#[inline(always)]
-fn high_bits<S, const N: usize>(_: S, words: &[u16; N]) -> u32 {
-    let bits = words.iter().rev();
-    bits.fold(0, |bits, word| bits << 1 | u32::from(word >> 15))
-}
-
-#[inline(always)]
-fn high_bits_16<S: fearless_simd::Simd>(simd: S, words: &[u16; 16]) -> u32 {
-    let words = i16x16::load_array(simd, words.map(u16::cast_signed));
-    words.simd_lt(0i16).to_bitmask() as u32
-}
-
-implement_lanes!(4, f32x4, mask32x4, load_bytes_4, look_up, high_bits);
-implement_lanes!(8, f32x8, mask32x8, load_bytes_8, look_up, high_bits);
+implement_lanes!(4, f32x4, mask32x4, load_bytes_4, look_up_4, high_bits_4);
+implement_lanes!(8, f32x8, mask32x8, load_bytes_8, look_up_8, high_bits_8);
 implement_lanes!(
     16,
     f32x16,
@@ -433,11 +340,11 @@ macro_rules! implement_narrow_lanes {
             }
             #[inline(always)]
             fn look_up(self, tables: [[f32; $n]; 3], indices: &[u16; $n]) -> [[[f32; $n]; 3]; 3] {
-                look_up(self, tables, indices)
+                look_up(tables, indices)
             }
             #[inline(always)]
             fn high_bits(self, words: &[u16; $n]) -> u32 {
-                high_bits(self, words)
+                high_bits(words)
             }
         }
     };

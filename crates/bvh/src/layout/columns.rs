@@ -1,9 +1,12 @@
 //! A packet of rays in columns, as vector lanes want them.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x4};
+
 use crate::bounds::Bounds;
 use crate::layout::class::{Class, ordered};
 use crate::ray::{Ray, interval};
-use crate::simd::{Width, transposed};
+use crate::simd::Width;
 
 /// `R` rays.
 #[derive(Clone, Copy)]
@@ -123,4 +126,19 @@ impl<const R: usize> Columns<R> {
             self.tmax[lane] = if lane < count { tmax } else { -1.0 };
         }
     }
+}
+
+/// Four rows of four numbers, as columns.
+#[inline(always)]
+fn transposed<S: Simd>(simd: S, rows: [[f32; 4]; 4]) -> [[f32; 4]; 4] {
+    let [a, b, c, d] = rows;
+    let row = |row: [f32; 4]| f32x4::load_array(simd, row);
+    let (a, b, c, d) = (row(a), row(b), row(c), row(d));
+    let (low, high) = ((a.zip_low(c), b.zip_low(d)), (a.zip_high(c), b.zip_high(d)));
+    [
+        low.0.zip_low(low.1).into(),
+        low.0.zip_high(low.1).into(),
+        high.0.zip_low(high.1).into(),
+        high.0.zip_high(high.1).into(),
+    ]
 }
