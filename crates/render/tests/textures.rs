@@ -65,20 +65,15 @@ fn codes_are_decoded_to_the_stated_error_in_order_and_exactly_at_the_ends() {
     assert!(decoded.is_sorted_by(|a, b| a < b));
 }
 
-type AnyImage = Image<AnyWrap, AnyWrap, AnyFilter, AnyFormat>;
+pub(crate) type AnyImage = Image<AnyWrap, AnyWrap, AnyFilter, AnyFormat>;
 const UV: UvMap = UvMap {
     set: 0,
     transform: None,
 };
 const WRAPS: [AnyWrap; 3] = [AnyWrap::Repeat, AnyWrap::MirroredRepeat, AnyWrap::Clamp];
-const BORDERS: [(AnyWrap, f32); 3] = [
-    (AnyWrap::WhiteBorder, 1.0),
-    (AnyWrap::BlackBorder, 0.0),
-    (AnyWrap::FlatBorder, 0.5),
-];
 
 /// A scene with one image of `f32` texels whose red is the texel's number plus one; all else is −1e9.
-fn numbered(width: u32, height: u32) -> SceneData {
+pub(crate) fn numbered(width: u32, height: u32) -> SceneData {
     let mut data = scene(&[FLOOR]);
     let texel = |k: u32| [k as f32 + 1.0, 0.25, 0.5, 0.75];
     let mut words: Vec<u32> = vec![(-1e9_f32).to_bits(); 8];
@@ -97,7 +92,7 @@ fn numbered(width: u32, height: u32) -> SceneData {
     data
 }
 
-fn image(wrap: (AnyWrap, AnyWrap), filter: AnyFilter) -> AnyImage {
+pub(crate) fn image(wrap: (AnyWrap, AnyWrap), filter: AnyFilter) -> AnyImage {
     Image {
         slot: 0,
         uv: UV,
@@ -108,7 +103,7 @@ fn image(wrap: (AnyWrap, AnyWrap), filter: AnyFilter) -> AnyImage {
     }
 }
 
-fn sample(data: &SceneData, image: &AnyImage, uv: [f32; 2]) -> f32 {
+pub(crate) fn sample(data: &SceneData, image: &AnyImage, uv: [f32; 2]) -> f32 {
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
     let mut surface = floor(d);
@@ -370,44 +365,4 @@ fn checkerboards_alternate() {
         }
     }
     assert!(seen.iter().all(|count| *count > 5_000), "{seen:?}");
-}
-
-/// An image that is there once: within it is clamped, a whole texel beyond its edge is the border, and half a texel beyond a
-/// bilinear filter is between the two.
-#[test]
-fn images_have_borders() {
-    let (width, height) = (5_u32, 3_u32);
-    let data = numbered(width, height);
-    let mut rng = Rng::new(118);
-    for (wrap, border) in BORDERS {
-        for filter in [AnyFilter::Nearest, AnyFilter::Bilinear] {
-            let both = image((wrap, wrap), filter);
-            let clamped = image((AnyWrap::Clamp, AnyWrap::Clamp), filter);
-            for _ in 0..2000 {
-                let uv = [0; 2].map(|_| rng.range(-1.0, 2.0) as f32);
-                let texels = [uv[0] * width as f32, uv[1] * height as f32];
-                let sizes = [width as f32, height as f32];
-                // How far outside of the outermost texels' centres.
-                let beyond = [0, 1].map(|k| (0.5 - texels[k]).max(texels[k] - sizes[k] + 0.5));
-                let beyond = beyond[0].max(beyond[1]);
-                let found = sample(&data, &both, uv);
-                if beyond < 0.0 {
-                    assert_eq!(found, sample(&data, &clamped, uv), "{wrap:?} {uv:?}");
-                } else if beyond > 1.0 {
-                    assert_eq!(found, border, "{wrap:?} {uv:?}");
-                }
-            }
-        }
-        // Along one axis alone; in the middle of a row's edge, half a texel out.
-        let once = image((wrap, AnyWrap::Repeat), AnyFilter::Nearest);
-        assert_eq!(
-            sample(&data, &once, [0.5, 1.5]),
-            sample(&data, &once, [0.5, 0.5])
-        );
-        assert_eq!(sample(&data, &once, [1.5, 0.5]), border);
-        let soft = image((wrap, wrap), AnyFilter::Bilinear);
-        let edge = sample(&data, &soft, [0.0, 0.5]);
-        let texel = 1.0 + width as f32;
-        assert!((edge - 0.5 * (texel + border)).abs() < 1e-5, "{edge}");
-    }
 }

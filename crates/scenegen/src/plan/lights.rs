@@ -19,9 +19,9 @@ use super::light_tree_gain;
 use super::options::LightPicks;
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
+use super::punctual::Punctual;
 use crate::desc::{
-    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, PunctualKind, SceneDesc, SurfaceDesc,
-    Texels, Wrap,
+    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, SceneDesc, SurfaceDesc, Texels, Wrap,
 };
 use crate::sixteen_bits;
 
@@ -229,73 +229,19 @@ impl PlannedLights {
     }
 
     fn add_punctual(&mut self, light: &LightDesc, radius: f64, data: &mut SceneData) {
-        let strength = luminance(light.intensity);
-        if strength <= 0.0 {
+        let Some(punctual) = Punctual::new(light, luminance(light.intensity), radius) else {
             return;
-        }
-        let sphere = 4.0 * std::f64::consts::PI;
-        // The kind is known below.
-        let record =
-            |position: glam::Vec3| PunctualRecord::new(0, position.to_array(), light.intensity);
-        let size = light.size;
-        let point = |position: glam::Vec3| LightBounds {
-            corners: [-size, size].map(|size| position.as_dvec3() + f64::from(size)),
-            ..LightBounds::point(position.as_dvec3(), strength)
         };
-        let sized = |record: PunctualRecord, without: LightNode, with: LightNode| match size {
-            0.0 => (without, record),
-            _ => (with, record.with_radius(size)),
-        };
-        let (node, power, record, reach) = match light.kind {
-            PunctualKind::Point { position } => {
-                let reach = Reach::Bounded(point(position));
-                let record = record(position);
-                let (node, record) = sized(record, LightNode::Point, LightNode::SphericalPoint);
-                (node, sphere * strength, record, reach)
-            }
-            PunctualKind::Spot {
-                position,
-                direction,
-                inner,
-                outer,
-            } => {
-                let record = PunctualRecord::spot(
-                    0,
-                    position.to_array(),
-                    light.intensity,
-                    direction.to_array(),
-                    [inner, outer],
-                );
-                let cone = 0.5 * sphere * light::versine(outer);
-                let reach = Reach::Bounded(LightBounds {
-                    axis: direction.as_dvec3(),
-                    half_angle: 0.0,
-                    ..point(position)
-                });
-                let (node, record) = sized(record, LightNode::Spot, LightNode::SphericalSpot);
-                (node, cone * strength, record, reach)
-            }
-            PunctualKind::Directional { direction } => {
-                let power = std::f64::consts::PI * radius * radius * strength;
-                let sun = |towards: glam::Vec3| {
-                    PunctualRecord::sun(0, towards.to_array(), light.intensity, size)
-                };
-                let (node, record) = match size {
-                    0.0 => (LightNode::Directional, record(-direction)),
-                    _ => (LightNode::Sun, sun(-direction)),
-                };
-                (node, power, record, Reach::Everywhere)
-            }
-        };
-        let kind = self.kind(node);
+        let kind = self.kind(punctual.node);
         push_light(
             data,
             PunctualRecord {
                 kind: kind as u32,
-                ..record
+                ..punctual.record
             },
         );
-        self.count(kind, &format!("light {:?}", light.name), power, reach);
+        let source = format!("light {:?}", light.name);
+        self.count(kind, &source, punctual.power, punctual.reach);
     }
 
     fn add_environment(

@@ -15,6 +15,7 @@ mod error;
 mod explain;
 mod geometry;
 mod image_levels;
+mod image_reading;
 mod images;
 mod light_tree;
 mod light_tree_gain;
@@ -30,6 +31,7 @@ mod options;
 mod planned;
 mod planned_materials;
 mod program;
+mod punctual;
 mod rough_dielectrics;
 mod sources;
 

@@ -6,14 +6,13 @@ use residual_render::math::vec3::vec3;
 use residual_render::program::{ColorNode, ImageNode, ScalarNode, Source};
 use residual_render::record::BufferRecord;
 use residual_render::surface::Attributes;
-use residual_render::texture::{
-    AnyFilter, AnyFormat, AnyWrap, ColorParam, Image, TransformParam, UvMap,
-};
+use residual_render::texture::{AnyFormat, ColorParam, Image, TransformParam, UvMap};
 use residual_render::tracer::TracerNode;
 
+use super::image_reading;
 use super::images::Images;
 use super::options::{Binding, PlanOptions, TextureResolution};
-use crate::desc::{ColorInput, Dismissed, Filter, ScalarInput, SceneDesc, TextureUse, Wrap};
+use crate::desc::{ColorInput, Dismissed, ScalarInput, SceneDesc, TextureUse};
 use crate::effect::Effect;
 
 /// Turns the inputs of one material's description into sources, collecting parameters.
@@ -345,17 +344,8 @@ impl<'a> Sources<'a> {
 
     fn extremes(&mut self, texture: &TextureUse, channel: usize, bytes: AnyFormat) -> [f32; 2] {
         let desc = &self.scene.textures[texture.texture];
-        let [mut least, mut greatest] =
-            self.images.extremes(self.scene, desc.image, channel, bytes);
-        // What is around the image counts, too.
-        for wrap in desc.wrap {
-            match wrap {
-                Wrap::WhiteBorder => [least, greatest] = [least.min(1.0), greatest.max(1.0)],
-                Wrap::BlackBorder => [least, greatest] = [least.min(0.0), greatest.max(0.0)],
-                Wrap::Repeat | Wrap::Mirror | Wrap::Clamp => {}
-            }
-        }
-        [least, greatest]
+        let extremes = self.images.extremes(self.scene, desc.image, channel, bytes);
+        image_reading::with_border(extremes, desc.wrap)
     }
 
     fn dismiss_image(&mut self, texture: &TextureUse, reason: &str) {
@@ -379,35 +369,15 @@ impl<'a> Sources<'a> {
     /// The texel of a map of normals.
     pub(super) fn normal_texel(&mut self, texture: &TextureUse) -> ColorNode {
         let mut image = self.image(texture, 0, AnyFormat::LinearRgba8);
-        for wrap in [&mut image.wrap.0, &mut image.wrap.1] {
-            if let AnyWrap::WhiteBorder | AnyWrap::BlackBorder = wrap {
-                *wrap = AnyWrap::FlatBorder;
-            }
-        }
+        image.wrap = image_reading::wraps_of_normals(image.wrap);
         ColorNode::Image(image)
     }
 
     fn image(&mut self, texture: &TextureUse, channel: u32, bytes: AnyFormat) -> ImageNode {
         let desc = &self.scene.textures[texture.texture];
         let format = self.images.format(self.scene, desc.image, bytes);
-        let wrap = desc.wrap.map(|wrap| match wrap {
-            Wrap::Repeat => AnyWrap::Repeat,
-            Wrap::Mirror => AnyWrap::MirroredRepeat,
-            Wrap::Clamp => AnyWrap::Clamp,
-            Wrap::WhiteBorder => AnyWrap::WhiteBorder,
-            Wrap::BlackBorder => AnyWrap::BlackBorder,
-        });
-        let filter = match desc.filter {
-            Filter::Nearest => AnyFilter::Nearest,
-            // The means of other things than colours are those of another material.
-            Filter::Mipmapped
-                if self.textures == TextureResolution::Filtered
-                    && bytes == AnyFormat::SrgbRgba8 =>
-            {
-                AnyFilter::Trilinear
-            }
-            Filter::Linear | Filter::Mipmapped => AnyFilter::Bilinear,
-        };
+        let wrap = desc.wrap.map(image_reading::wrap);
+        let filter = image_reading::filter(desc.filter, self.textures, bytes);
         let image = self
             .images
             .param(self.scene, desc.image, [bytes, format], filter);
