@@ -1,9 +1,9 @@
 //! Paths through bodies: what is lost between two surfaces, and which of several bodies is where.
 
 use super::forward::forward;
-use super::matter::{Matter, Scattering};
 use super::{
-    Bounce, CostMap, Crossing, MediumRecord, Nesting, Passage, Path, Shadow, Tracer, Vertex,
+    Bounce, CostMap, Crossing, Matter, MediumRecord, Nesting, Passage, Path, Scattering, Shadow,
+    Tracer, Vertex,
 };
 use crate::bsdf::{Bsdf, HenyeyGreenstein};
 use crate::camera::Camera;

@@ -1,20 +1,8 @@
-//! Which medium a path is in, and what it meets where it crosses the surface of a body.
+//! How bodies lie to each other: which medium a path is in, and what it meets where it crosses the surface of a body.
 
-use super::{MediumRecord, Path, PathState};
+use super::{Crossing, MediumRecord, Path, PathState};
 use crate::domain::Domain;
-use crate::math::Vec3;
 use crate::surface::Surface;
-
-/// The surface of a body, as a path meets it.
-#[derive(Clone, Copy)]
-pub struct Crossing<D: Domain> {
-    /// The media of a path that goes through the surface.
-    pub beyond: D::U,
-    /// Index of refraction of what the body lies in; `None` if nothing encloses bodies.
-    pub around: Option<D::F>,
-    /// The surface is not there, since it lies within a body that goes before its own; `None` if that never happens.
-    pub hidden: Option<D::M>,
-}
 
 /// How bodies lie to each other.
 pub trait Nesting<D: Domain> {
@@ -153,20 +141,5 @@ impl<D: Domain> Nesting<D> for AnyNesting {
             Self::Beside => Beside.crossing(d, path, surface, interior),
             Self::Nested => Nested.crossing(d, path, surface, interior),
         }
-    }
-}
-
-impl<D: Domain> Crossing<D> {
-    /// The state of a path that goes on from the surface in direction `dir`.
-    #[inline(always)]
-    pub(super) fn towards(
-        &self,
-        d: D,
-        state: PathState<D::U>,
-        surface: &Surface<D>,
-        dir: Vec3<D::F>,
-    ) -> PathState<D::U> {
-        let passes = d.lt(surface.geometric_normal.dot(d, dir), d.lit(0.0));
-        state.in_media(d, d.select_u(passes, self.beyond, state.media(d)))
     }
 }
