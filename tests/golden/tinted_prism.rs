@@ -26,7 +26,7 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0x3a84737ba5e8efe5;
+    pub const STRUCTURE: u64 = 0x96feb08672603b9f;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
@@ -132,7 +132,7 @@ mod program1 {
 
         #[inline(always)]
         fn interior(&self, d: D, surface: &Surface<D>) -> Option<D::U> {
-            Some(medium(d, surface, 3207))
+            Some(medium(d, surface, 3591))
         }
 
         #[inline(always)]
