@@ -2,6 +2,8 @@
 //! instruction, inlined ones included.
 //!
 //! The same look at scenes that do call for something finds it: otherwise it would say nothing.
+//!
+//! Longer than 400 lines: tables of words and of files.
 #![cfg(target_os = "linux")]
 
 use std::path::Path;

@@ -9,8 +9,8 @@ use crate::simd::Width;
 /// A layout of nodes that the kernels can traverse: [`WideNode`](crate::WideNode) and
 /// [`QuantizedNode`](crate::QuantizedNode), and nothing else.
 ///
-/// Planes have the indices of the rows of [`WideNode::bounds`](crate::WideNode::bounds): `2 * axis`,
-/// and one more for the upper.
+/// Planes have the indices of the rows of a [`WideNode`](crate::WideNode)'s bounds: `2 * axis`, and one
+/// more for the upper.
 ///
 /// # Safety
 /// [`children`](Boxes::children) must give the same array each time: what [`BvhView::new`] has found

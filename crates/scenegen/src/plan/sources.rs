@@ -349,11 +349,8 @@ impl<'a> Sources<'a> {
     }
 
     fn dismiss_image(&mut self, texture: &TextureUse, reason: &str) {
-        let image = &self.scene.images[self.scene.textures[texture.texture].image];
-        self.dismiss(
-            Effect::Textures,
-            format!("image {:?}: {reason}", image.name),
-        );
+        let name = &self.scene.images[self.scene.textures[texture.texture].image].name;
+        self.dismiss(Effect::Textures, format!("image {name:?}: {reason}"));
     }
 
     /// One channel of a texture, linear.
@@ -378,12 +375,11 @@ impl<'a> Sources<'a> {
         let format = self.images.format(self.scene, desc.image, bytes);
         let wrap = desc.wrap.map(image_reading::wrap);
         let filter = image_reading::filter(desc.filter, self.textures, bytes);
-        let image = self
-            .images
-            .param(self.scene, desc.image, [bytes, format], filter);
+        let (images, formats) = (&mut self.images, [bytes, format]);
+        let image = images.param(self.scene, desc.image, formats, filter);
         let slot = self.param_record(image);
-        let name = self.scene.images[desc.image].name.clone();
-        self.image_names.insert(slot, name);
+        let name = &self.scene.images[desc.image].name;
+        self.image_names.insert(slot, name.clone());
         let transform = texture.transform.map(|matrix| {
             let [u, v] = matrix.map(Into::into);
             self.param_record(TransformParam { u, v })
