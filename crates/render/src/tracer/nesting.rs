@@ -99,7 +99,7 @@ impl<D: Domain> Nesting<D> for Nested {
                 0 => d.truth(true),
                 at => !d.lt_u(Self::body(d, media, at - 1), above),
             };
-            // At the last place whose predecessor goes before, which is the first from behind.
+            // The one place before which all bodies go before, and from which on none does.
             let here = goes_before & d.lt_u(body, above);
             entered = d.select_u(here, Self::with(d, media, at, interior), entered);
             let found = d.eq_u(body, interior);
