@@ -61,6 +61,13 @@ pub struct MetallicRoughness {
     pub clearcoat_normal: Option<NormalMap>,
 }
 
+impl MetallicRoughness {
+    /// It bounds a solid into which light passes in all directions: wax, skin.
+    pub(crate) fn is_translucent(&self) -> bool {
+        self.solid && self.diffuse_transmission.factor > 0.0
+    }
+}
+
 /// What a body takes of light that goes straight on: all of it is absorbed, but for what is scattered.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attenuation {

@@ -1,12 +1,41 @@
-//! Whether a mesh encloses a body.
+//! Whether meshes enclose bodies.
 
 use std::collections::BTreeMap;
 
-use crate::desc::MeshDesc;
+use crate::desc::{MeshDesc, SceneDesc, SurfaceDesc};
+
+/// Which meshes are closed surfaces, of those whose materials let light into bodies.
+pub(super) struct Closed {
+    pub(super) meshes: Vec<bool>,
+    /// For each material, whether all its meshes are.
+    pub(super) materials: Vec<bool>,
+}
+
+impl Closed {
+    /// Those of a scene.
+    pub(super) fn of(scene: &SceneDesc) -> Self {
+        let transmits = |material: usize| match &scene.materials[material].surface {
+            SurfaceDesc::MetallicRoughness(surface) => {
+                surface.transmission.factor > 0.0 || surface.is_translucent()
+            }
+            SurfaceDesc::Dielectric { .. } => true,
+            _ => false,
+        };
+        let meshes = scene.meshes.iter();
+        let meshes: Vec<_> = meshes
+            .map(|mesh| transmits(mesh.material) && is_closed(mesh))
+            .collect();
+        let mut materials = vec![true; scene.materials.len()];
+        for (mesh, is_closed) in scene.meshes.iter().zip(&meshes) {
+            materials[mesh.material] &= is_closed;
+        }
+        Self { meshes, materials }
+    }
+}
 
 /// Every edge is met by as many triangles in one direction as in the other: the surface has no border. Vertices are
 /// the same where their positions are, since files split them along seams of other attributes.
-pub(super) fn is_closed(mesh: &MeshDesc) -> bool {
+fn is_closed(mesh: &MeshDesc) -> bool {
     let mut numbers = BTreeMap::new();
     let mut number = |corner: u32| {
         // −0 and 0 are the same place.

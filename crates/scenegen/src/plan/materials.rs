@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use residual_render::surface::Attributes;
 use residual_render::tracer::{DebugView, TracerNode};
 
+use super::closed::Closed;
 use super::geometry::is_smooth;
 use super::images::Images;
-use super::media::{Closed, Media};
+use super::media::Media;
 use super::opacity::Opacity;
 use super::options::{CullingRule, PlanOptions};
 use super::planned::MaterialUse;
@@ -15,7 +16,7 @@ use super::planned_materials::{Materials, PlannedMaterial};
 use super::program::Builder;
 use super::rough_dielectrics::RoughDielectrics;
 use super::sources::Sources;
-use crate::desc::{SceneDesc, SurfaceDesc};
+use crate::desc::SceneDesc;
 
 /// Plans the materials of all instanced meshes that are seen.
 pub(super) fn plan_materials(
@@ -43,7 +44,7 @@ pub(super) fn plan_materials(
             inputs: Vec::new(),
             // Rays are then refracted even where the file has no KHR_materials_volume: the specification's thin walls are meant
             // for sheets, and other offline renderers (Cycles, Mitsuba) refract as well.
-            encloses: closed.materials[material] && transmits(&desc.surface),
+            encloses: closed.materials[material],
             nesting: media.nesting(),
             rough_dielectrics: &mut rough_dielectrics,
         };
@@ -128,11 +129,4 @@ fn available_attributes(scene: &SceneDesc) -> Vec<Option<Attributes>> {
         *all = Some(all.unwrap_or_default().union(has));
     }
     available
-}
-
-fn transmits(surface: &SurfaceDesc) -> bool {
-    match surface {
-        SurfaceDesc::MetallicRoughness(surface) => surface.transmission.factor > 0.0,
-        _ => false,
-    }
 }

@@ -6,7 +6,7 @@ use glam::Vec3A;
 use residual_render::record::BufferRecord;
 use residual_render::tracer::{AnyNesting, MatterNode, MediaNode, MediumRecord, Nested};
 
-use super::closed::is_closed;
+use super::closed::Closed;
 use super::options::BodyRule;
 use crate::desc::{
     Attenuation, MaterialDesc, MeshDesc, Scattering, SceneDesc, SurfaceDesc, Warning, WarningKind,
@@ -132,12 +132,9 @@ impl Media {
         Some(&self.media[index as usize])
     }
 
-    /// The records of all media; none if paths meet none.
+    /// The records of all media.
     pub(super) fn words(&self) -> Vec<u32> {
         let mut words = Vec::new();
-        if self.node.is_none() {
-            return words;
-        }
         let outside = Medium {
             attenuation: None,
             scattering: None,
@@ -187,8 +184,7 @@ fn body(material: &MaterialDesc, is_closed: bool) -> Option<Medium> {
     match &material.surface {
         SurfaceDesc::MetallicRoughness(surface) => {
             let refracts = surface.transmission.factor > 0.0 && (surface.solid || is_closed);
-            let is_translucent = surface.diffuse_transmission.factor > 0.0 && surface.solid;
-            (refracts || is_translucent).then(|| Medium {
+            (refracts || surface.is_translucent()).then(|| Medium {
                 attenuation: surface.attenuation,
                 scattering: surface.scattering.filter(|_| surface.attenuation.is_some()),
                 ior: surface.ior.max(1.0),
@@ -202,35 +198,6 @@ fn body(material: &MaterialDesc, is_closed: bool) -> Option<Medium> {
             priority: 0,
         }),
         _ => None,
-    }
-}
-
-/// Which meshes are closed surfaces, of those whose materials let light through.
-pub(super) struct Closed {
-    meshes: Vec<bool>,
-    /// For each material, whether all its meshes are.
-    pub(super) materials: Vec<bool>,
-}
-
-impl Closed {
-    /// Those of a scene.
-    pub(super) fn of(scene: &SceneDesc) -> Self {
-        let transmits = |material: usize| match &scene.materials[material].surface {
-            SurfaceDesc::MetallicRoughness(surface) => {
-                surface.transmission.factor > 0.0 || surface.diffuse_transmission.factor > 0.0
-            }
-            SurfaceDesc::Dielectric { .. } => true,
-            _ => false,
-        };
-        let meshes = scene.meshes.iter();
-        let meshes: Vec<_> = meshes
-            .map(|mesh| transmits(mesh.material) && is_closed(mesh))
-            .collect();
-        let mut materials = vec![true; scene.materials.len()];
-        for (mesh, is_closed) in scene.meshes.iter().zip(&meshes) {
-            materials[mesh.material] &= is_closed;
-        }
-        Self { meshes, materials }
     }
 }
 
