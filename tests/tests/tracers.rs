@@ -5,7 +5,7 @@ use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, LaneCount, Traversal};
 use residual_render::film::Film;
 use residual_render::layer::{Layer, Layers};
-use residual_render::tracer::{CostMap, DebugView, TracerNode};
+use residual_render::tracer::{AnySharing, CostMap, DebugView, TracerNode};
 use residual_scenegen::desc::{MaterialDesc, Projection, SceneDesc};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
 use residual_tests::fixtures::{self, Builder, color, material, matte, sheet};
@@ -278,6 +278,24 @@ fn ambient_occlusion() {
         TracerNode::AmbientOcclusion,
         Layers::NONE.with(Layer::Normal),
         &LaneCount::ALL,
+    );
+}
+
+#[test]
+fn paths_from_both_ends() {
+    check(
+        TracerNode::Bidirectional(AnySharing::Combined),
+        Layers::NONE.with(Layer::Normal),
+        &[LaneCount::Four],
+    );
+}
+
+#[test]
+fn paths_from_lights() {
+    check(
+        TracerNode::Bidirectional(AnySharing::LightPathsOnly),
+        Layers::NONE,
+        &[],
     );
 }
 

@@ -172,6 +172,11 @@ pub(crate) struct SceneArgs {
 }
 
 impl SceneArgs {
+    /// Whether the tracer has paths from lights.
+    pub(crate) fn has_light_paths(&self) -> bool {
+        self.tracer.node(self.view, self.mis).has_light_paths()
+    }
+
     /// What is put before the camera's eye.
     pub(crate) fn optics(&self) -> Optics {
         let focus = self.focus;

@@ -1,7 +1,7 @@
 //! What arguments choose among.
 
 use clap::ValueEnum;
-use residual_render::tracer::{AnyMis, DebugView, TracerNode};
+use residual_render::tracer::{AnyMis, AnySharing, DebugView, TracerNode};
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum CullingArg {
@@ -65,8 +65,12 @@ pub(crate) enum MisArg {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TracerArg {
-    /// Light along paths
+    /// Light along paths from the camera
     Path,
+    /// Light along paths from both ends: caustics
+    Bidirectional,
+    /// Light along paths from lights alone: for comparison
+    Light,
     /// Ambient occlusion: how open the surroundings are within --reach
     Ao,
     /// What --view says of what is seen first
@@ -83,6 +87,8 @@ impl TracerArg {
                 MisArg::Lights => AnyMis::LightsOnly,
                 MisArg::Bsdf => AnyMis::BsdfOnly,
             }),
+            Self::Bidirectional => TracerNode::Bidirectional(AnySharing::Combined),
+            Self::Light => TracerNode::Bidirectional(AnySharing::LightPathsOnly),
             Self::Ao => TracerNode::AmbientOcclusion,
             Self::Debug => TracerNode::Debug(match view {
                 ViewArg::Normals => DebugView::Normals,

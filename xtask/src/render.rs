@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView};
 use residual_driver::tiers::{Ledger, Tiers};
 use residual_frontend::hierarchy_quality;
@@ -16,6 +16,10 @@ use crate::choices::{SpecializeArg, TierArg};
 use crate::scene;
 
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
+    ensure!(
+        !(args.render.adaptive && args.scene.has_light_paths()),
+        "--adaptive: paths from lights add to any pixel, so that no pixel can have more of them; render with --tracer path"
+    );
     let session = Session::new(
         &args.render,
         args.scene.scene.file_stem().unwrap_or_default(),

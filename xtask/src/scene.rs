@@ -18,9 +18,7 @@ use residual_scenegen::plan::{
 };
 
 use crate::args::SceneArgs;
-use crate::choices::{
-    CullingArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TexturesArg, TracerArg,
-};
+use crate::choices::{CullingArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TexturesArg};
 
 /// What statistics say about a planned scene.
 pub(crate) fn summary(plan: &Plan) -> SceneSummary {
@@ -71,7 +69,8 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
         },
     )?;
     set_light_sizes(args, &mut scene);
-    let needs_light = matches!(args.tracer, TracerArg::Path) && !scene.instances.is_empty();
+    let tracer = args.tracer.node(args.view, args.mis);
+    let needs_light = tracer.needs_light() && !scene.instances.is_empty();
     match args.studio {
         StudioArg::Auto if needs_light && scene.is_unlit() => {
             scene.add_studio();
@@ -126,7 +125,7 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             SamplerArg::Sobol => AnySampler::Sobol,
             SamplerArg::Independent => AnySampler::Independent,
         },
-        tracer: args.tracer.node(args.view, args.mis),
+        tracer,
         layers: args.layers(),
         bodies: BodyRule::default(),
         flat_normals: false,

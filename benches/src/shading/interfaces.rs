@@ -293,6 +293,10 @@ impl TileRenderer for CasesRenderer {
         Layers::NONE
     }
 
+    fn has_light_paths(&self) -> bool {
+        false
+    }
+
     fn render_tiles(
         &self,
         scene: &SceneView<'_>,

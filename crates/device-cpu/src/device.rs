@@ -6,12 +6,15 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use residual_render::film::{Film, TILE_SIZE, TilePass};
+use residual_render::film::{Film, SampleSet, TILE_SIZE, TilePass, TileSamples};
+use residual_render::layer::Layers;
 use residual_render::passes::{
     Counters, MAX_PASS, Pass, Progress, RenderOptions, RenderReport, render_passes,
 };
+use residual_render::tracer::{PathOrigin, TracerOptions};
 
 use crate::job::{SceneView, TileJob, TileRenderer};
+use crate::splats::Splats;
 
 /// Threads that render.
 pub struct CpuDevice {
@@ -51,7 +54,7 @@ impl CpuDevice {
     /// Adds a pass of samples to a film that has the renderer's layers, and to its second set.
     ///
     /// # Panics
-    /// If the film has others.
+    /// If the film has other layers, or if its samples are spread by noise and the renderer has light paths, which light all pixels.
     pub fn pass(
         &self,
         renderer: &dyn TileRenderer,
@@ -60,7 +63,59 @@ impl CpuDevice {
         film: &mut Film,
         pass: Pass,
     ) -> Counters {
-        self.tiles(renderer, scene, options, film.tile_passes(pass))
+        if !renderer.has_light_paths() {
+            return self.tiles(renderer, scene, options, film.tile_passes(pass));
+        }
+        // It would need light paths of its own for all pixels, of which it has few.
+        film.drop_second_set();
+        let mut counters = Counters::default();
+        for part in parts(pass, options.size) {
+            let (splats, did) = self.splats(renderer, scene, options, part);
+            counters += did;
+            let tiles = film.tile_passes(part);
+            counters += self.add_tiles(renderer, scene, options, tiles, Some(&splats));
+        }
+        counters
+    }
+
+    /// What light paths bring to the image in a pass.
+    fn splats(
+        &self,
+        renderer: &dyn TileRenderer,
+        scene: &SceneView<'_>,
+        options: &RenderOptions,
+        pass: Pass,
+    ) -> (Splats, Counters) {
+        let tiles = Film::new(options.size[0], options.size[1], TILE_SIZE, Layers::NONE)
+            .rects()
+            .map(|rect| TileSamples { rect, pass })
+            .collect::<Vec<_>>();
+        let lists: Vec<_> = self.pool.install(|| {
+            let jobs = tiles.par_iter().map(|tile| {
+                let set = SampleSet::First;
+                let job = TileJob {
+                    tiles: std::slice::from_ref(tile),
+                    set,
+                    tracer: TracerOptions {
+                        origin: PathOrigin::Lights,
+                        ..options.tracer(set)
+                    },
+                };
+                let mut list = vec![0.0; 4 * job.most_splats()];
+                let did = renderer.render_tiles(scene, &job, &mut list);
+                (list[..4 * did.splats as usize].to_vec(), did)
+            });
+            jobs.collect()
+        });
+        let mut splats = Splats::new(options.size, pass.count);
+        let mut counters = Counters::default();
+        let start = Instant::now();
+        for (list, did) in lists {
+            splats.add(&list);
+            counters += did;
+        }
+        counters.film += start.elapsed().as_secs_f64();
+        (splats, counters)
     }
 
     /// Adds passes to a film until it has so many samples a pixel.
@@ -90,6 +145,17 @@ impl CpuDevice {
         options: &RenderOptions,
         tiles: Vec<TilePass<'_>>,
     ) -> Counters {
+        self.add_tiles(renderer, scene, options, tiles, None)
+    }
+
+    fn add_tiles(
+        &self,
+        renderer: &dyn TileRenderer,
+        scene: &SceneView<'_>,
+        options: &RenderOptions,
+        tiles: Vec<TilePass<'_>>,
+        splats: Option<&Splats>,
+    ) -> Counters {
         let layers = renderer.layers();
         let counters = Mutex::new(Counters::default());
         let jobs = jobs(tiles, self.threads());
@@ -105,10 +171,13 @@ impl CpuDevice {
                 let mut samples = vec![0.0; job.samples() * layers.stride()];
                 let mut did = renderer.render_tiles(scene, &job, &mut samples);
                 let film_start = Instant::now();
-                let mut rest = samples.as_slice();
+                let mut rest = samples.as_mut_slice();
                 for (TilePass { tile, .. }, part) in tiles.into_iter().zip(&parts) {
                     assert_eq!(tile.layers(), layers, "one film, one set of layers");
-                    let (of_tile, others) = rest.split_at(part.count() * layers.stride());
+                    let (of_tile, others) = rest.split_at_mut(part.count() * layers.stride());
+                    if let Some(splats) = splats {
+                        splats.add_to(part, layers.stride(), of_tile);
+                    }
                     tile.add(of_tile);
                     rest = others;
                 }
@@ -138,6 +207,21 @@ impl CpuDevice {
         let (report, Ok(())) = render_passes(options, &mut film, pass, progress);
         (film, report)
     }
+}
+
+/// About as many light paths have their splats in memory at a time.
+const LIGHT_PATHS: u64 = 1 << 20;
+
+/// A pass of an image of this size in parts of so few samples.
+fn parts(pass: Pass, size: [u32; 2]) -> impl Iterator<Item = Pass> {
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    let most = (LIGHT_PATHS / pixels.max(1)).max(1) as u32;
+    (0..pass.count)
+        .step_by(most as usize)
+        .map(move |done| Pass {
+            first: pass.first + done,
+            count: most.min(pass.count - done),
+        })
 }
 
 /// Fewest and most samples that make it worth to share streams: the last paths of a job leave them half empty.

@@ -18,6 +18,13 @@ macro_rules! compiled_scene {
                 $scene::LAYERS
             }
 
+            fn has_light_paths(&self) -> bool {
+                // A scene's own constant goes before the trait's.
+                #[allow(unused_imports)]
+                use $crate::generated::LightPaths as _;
+                $scene::HAS_LIGHT_PATHS
+            }
+
             fn render_tiles(
                 &self,
                 view: &$crate::SceneView<'_>,
@@ -37,7 +44,7 @@ macro_rules! export_renderer {
         /// What this library was made for.
         #[unsafe(no_mangle)]
         pub extern "C" fn residual_identity() -> $crate::plugin::Identity {
-            $crate::plugin::Identity::new(Compiled::LANES, $crate::TileRenderer::layers(&Compiled))
+            $crate::plugin::Identity::of(Compiled::LANES, &Compiled)
         }
 
         /// Renders tiles.

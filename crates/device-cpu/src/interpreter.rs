@@ -27,6 +27,10 @@ impl TileRenderer for Interpreter {
         self.structure.layers
     }
 
+    fn has_light_paths(&self) -> bool {
+        self.structure.tracer.has_light_paths()
+    }
+
     fn render_tiles(
         &self,
         scene: &SceneView<'_>,

@@ -6,9 +6,9 @@
 //! [`tile::render_tiles`] and give the same bits.
 
 mod ahead;
-mod camera_rays;
 mod device;
 mod export;
+mod first_rays;
 mod interpreter;
 mod job;
 pub mod lanes;
@@ -16,6 +16,7 @@ pub mod plugin;
 mod render_lanes;
 mod samples;
 mod shade;
+mod splats;
 mod stream;
 pub mod tile;
 pub mod traversal;
@@ -31,4 +32,12 @@ pub use traversal::{AnyBvh, PreciseBvh, Traversal};
 pub mod generated {
     pub use fearless_simd;
     pub use residual_render as render;
+
+    /// Whether a scene's paths begin at lights, too: emitted scenes say so where they do.
+    pub trait LightPaths {
+        /// They do not.
+        const HAS_LIGHT_PATHS: bool = false;
+    }
+
+    impl<T> LightPaths for T {}
 }

@@ -18,7 +18,7 @@ use crate::lanes::LaneCount;
 use crate::traversal::{AlphaFilter, Traversal};
 
 /// Raised whenever the layout of anything here or the meaning of buffers changes.
-const ABI_VERSION: u32 = 4;
+const ABI_VERSION: u32 = 5;
 
 /// What a library was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,17 +29,23 @@ pub struct Identity {
     buffers: u32,
     call_size: u32,
     layers: u32,
+    light_paths: u32,
 }
 
 impl Identity {
-    /// The identity of renderers with this lane count and these layers that are built from these sources.
-    pub const fn new(lanes: LaneCount, layers: Layers) -> Self {
+    /// The identity of a renderer with this lane count that is built from these sources.
+    pub fn of(lanes: LaneCount, renderer: &impl TileRenderer) -> Self {
+        Self::new(lanes, renderer.layers(), renderer.has_light_paths())
+    }
+
+    fn new(lanes: LaneCount, layers: Layers, has_light_paths: bool) -> Self {
         Self {
             abi_version: ABI_VERSION,
             lanes: lanes.count(),
             buffers: Buffer::COUNT as u32,
             call_size: size_of::<TileCall>() as u32,
             layers: layers.bits(),
+            light_paths: u32::from(has_light_paths),
         }
     }
 }
@@ -276,6 +282,7 @@ impl From<libloading::Error> for LoadError {
 pub struct LoadedRenderer {
     render_tiles: RenderTiles,
     layers: Layers,
+    has_light_paths: bool,
     // Keeps the code in memory.
     _library: libloading::Library,
 }
@@ -295,15 +302,17 @@ impl LoadedRenderer {
             let library = libloading::Library::new(path)?;
             let identity: GetIdentity = *library.get(b"residual_identity\0")?;
             let identity = identity();
-            // Layers are what the library says; the rest has to be what is expected.
+            // Layers and light paths are what the library says; the rest has to be what is expected.
             let layers = Layers::from_bits(identity.layers);
-            if identity != Identity::new(lanes, layers) {
+            let has_light_paths = identity.light_paths != 0;
+            if identity != Identity::new(lanes, layers, has_light_paths) {
                 return Err(LoadError::Mismatch);
             }
             let render_tiles: RenderTiles = *library.get(b"residual_render_tiles\0")?;
             Ok(Self {
                 render_tiles,
                 layers,
+                has_light_paths,
                 _library: library,
             })
         }
@@ -313,6 +322,10 @@ impl LoadedRenderer {
 impl TileRenderer for LoadedRenderer {
     fn layers(&self) -> Layers {
         self.layers
+    }
+
+    fn has_light_paths(&self) -> bool {
+        self.has_light_paths
     }
 
     fn render_tiles(

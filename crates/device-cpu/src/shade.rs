@@ -66,6 +66,10 @@ where
             }
             if let Some(shadow) = &step.shadow {
                 let active = d.bits(shadow.active) & valid;
+                let sample = match shadow.pixel {
+                    None => sample,
+                    Some(pixel) => sample + pixel,
+                };
                 self.shadows.push(d, active, shadow, sample);
             }
             if let Some(bounce) = &step.bounce {

@@ -76,12 +76,14 @@ struct State {
 pub(crate) struct PathStream {
     rays: Vec<Ray>,
     states: Vec<State>,
+    /// [`Path::rivals`] of each; empty where the tracer has none.
+    rivals: Vec<f32>,
     len: usize,
 }
 
 impl PathStream {
     /// An empty stream of at most this many paths.
-    pub(crate) fn with_capacity(capacity: usize) -> Self {
+    pub(crate) fn with_capacity(capacity: usize, has_rivals: bool) -> Self {
         let nothing = State {
             weight: [0; 4],
             origin: [0; 4],
@@ -89,6 +91,10 @@ impl PathStream {
         Self {
             rays: vec![NOWHERE; capacity + MAX_LANES],
             states: vec![nothing; capacity + MAX_LANES],
+            rivals: match has_rivals {
+                true => vec![0.0; capacity + MAX_LANES],
+                false => Vec::new(),
+            },
             len: 0,
         }
     }
@@ -142,10 +148,20 @@ impl PathStream {
             },
             throughput: vec3(real(r), real(g), real(b)),
             pdf: real(pdf),
+            rivals: self.rivals(d, members),
             key: SampleKey { pixel, index },
             state: PathState(state),
         };
         (path, sample)
+    }
+
+    #[inline(always)]
+    fn rivals<D: Lanes>(&self, d: D, members: &[usize; MAX_LANES]) -> D::F {
+        if self.rivals.is_empty() {
+            return d.lit(0.0);
+        }
+        let values = members.map(|member| self.rivals[member].to_bits());
+        d.from_bits(d.word(&values[..D::LANES]))
     }
 
     /// Appends the paths whose bit is set, which belong to these samples.
@@ -160,6 +176,13 @@ impl PathStream {
             d.to_bits(path.pdf),
         ]);
         let origins = d.rows([path.key.pixel, path.key.index, sample, path.state.0]);
+        if !self.rivals.is_empty() {
+            let mut values = [0; MAX_LANES];
+            d.store_word(d.to_bits(path.rivals), &mut values[..D::LANES]);
+            compact::<D>(bits, self.len, |at, lane| {
+                self.rivals[at] = f32::from_bits(values[lane]);
+            });
+        }
         self.len = compact::<D>(bits, self.len, |at, lane| {
             self.rays[at] = ray_of_rows(orgs[lane], dirs[lane]);
             self.states[at] = State {

@@ -7,9 +7,9 @@ use residual_render::alpha::Candidate;
 use residual_render::domain::{Lanes, MAX_LANES};
 use residual_render::passes::Counters;
 use residual_render::renderer::Renderer;
-use residual_render::tracer::{Settings, Tracer};
+use residual_render::tracer::{PathOrigin, Settings, Tracer};
 
-use crate::camera_rays::CameraRays;
+use crate::first_rays::FirstRays;
 use crate::job::{SceneView, TileJob};
 use crate::samples::Samples;
 use crate::shade::Shading;
@@ -30,7 +30,7 @@ impl Stopwatch {
 /// Paths under way at once. With their rays and hits they fit the second-level cache.
 const STREAM: usize = 4096;
 
-/// Renders tiles. Streams of paths are traced, sorted by program, shaded and thinned out; then camera rays fill the
+/// Renders tiles. Streams of paths are traced, sorted by program, shaded and thinned out; then new paths fill the
 /// stream up again, so that lanes and packets stay full until the last samples of the job.
 #[inline(always)]
 pub fn render_tiles<D, Sc>(
@@ -59,22 +59,27 @@ where
     } else {
         None
     };
-    let mut cameras = CameraRays::new(job);
+    let mut first_rays = FirstRays::new(job);
+    let has_rivals = tracer.has_light_paths().is_some();
     let capacity = STREAM.min(job.samples() + MAX_LANES);
-    let mut paths = PathStream::with_capacity(capacity);
-    let mut next = PathStream::with_capacity(capacity);
+    let mut paths = PathStream::with_capacity(capacity, has_rivals);
+    let mut next = PathStream::with_capacity(capacity, has_rivals);
     let mut shadows = ShadowStream::with_capacity(capacity);
     let mut hits = SortedHits::with_capacity(capacity, scene.programs());
     let mut counters = Counters::default();
     let mut clock = Stopwatch(Instant::now());
-    let mut samples = Samples::new(samples, tracer.layers());
+    let mut samples = match tracer.has_light_paths() {
+        Some(PathOrigin::Lights) => Samples::splats(samples),
+        None | Some(PathOrigin::Camera) => Samples::sums(samples, tracer.layers()),
+    };
 
     loop {
         let carried = paths.len();
-        cameras.fill(d, scene, &tracer, &mut paths);
+        first_rays.fill(d, scene, &tracer, &mut paths);
         clock.lap(&mut counters.emit);
         let all = paths.len();
         if all == 0 {
+            counters.splats = samples.splatted() as u64;
             return counters;
         }
 

@@ -10,7 +10,7 @@ use residual_render::layer::Layers;
 use residual_render::passes::{Counters, MAX_PASS, Pass};
 use residual_render::program::Structure;
 use residual_render::scene_data::SceneData;
-use residual_render::tracer::{CostMap, TracerOptions};
+use residual_render::tracer::{CostMap, PathOrigin, TracerOptions};
 use residual_wgsl::{KernelSet, Mapping};
 
 use crate::error::Error;
@@ -119,6 +119,7 @@ impl<'g> WgpuRenderer<'g> {
             max_depth: 2,
             roulette_from: 2,
             reach: f32::MAX,
+            origin: PathOrigin::Camera,
         };
         let settings = self
             .places

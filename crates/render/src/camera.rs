@@ -2,8 +2,8 @@
 
 use crate::domain::{Buffer, Domain};
 use crate::math::Vec3;
-use crate::math::elementary::sincos_turns;
-use crate::math::warp::disc;
+use crate::math::elementary::{atan2, sincos_turns};
+use crate::math::warp::{FRAC_1_PI, disc};
 use crate::record::record;
 use crate::scene_data::SceneData;
 use crate::surface::PathRay;
@@ -14,11 +14,29 @@ pub trait Camera<D: Domain> {
     /// random numbers in [0, 1) where the camera [has a lens](Camera::has_lens).
     fn ray(&self, d: D, film: [D::F; 2], lens: [D::F; 2]) -> PathRay<D>;
 
+    /// Where a point is seen, by way of the place of the lens that `lens` stands for.
+    fn sight(&self, d: D, point: Vec3<D::F>, lens: [D::F; 2]) -> Sight<D>;
+
+    /// Density, per area across the ray, with which rays through places that are evenly spread over the film arrive at this
+    /// distance in the unit direction `dir`: the importance of a place there, divided by that of the whole film.
+    fn density(&self, d: D, dir: Vec3<D::F>, distance: D::F) -> D::F;
+
     /// Whether rays pass through different points of a lens: others need no random numbers for it.
     #[inline(always)]
     fn has_lens(&self) -> bool {
         false
     }
+}
+
+/// Where a camera sees a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<D: Domain> {
+    /// The place where the ray to the point begins.
+    pub from: Vec3<D::F>,
+    /// Film coordinates; within [−1, 1] if the point is in the image.
+    pub film: [D::F; 2],
+    /// The point is before the camera, not behind it.
+    pub is_before: D::M,
 }
 
 record! {
@@ -86,6 +104,36 @@ impl<D: Domain> CameraRecord<D> {
     fn on_film(&self, [x, y]: [D::F; 2]) -> Vec3<D::F> {
         self.right.scale(x) + self.up.scale(y)
     }
+
+    /// A place on the lens, given from its middle.
+    #[inline(always)]
+    fn on_lens(&self, d: D, lens: [D::F; 2]) -> Vec3<D::F> {
+        let [x, y] = disc(d, lens).map(|c| c * self.lens_radius);
+        self.right.normalize(d).scale(x) + self.up.normalize(d).scale(y)
+    }
+
+    /// Film coordinates of a place in the film's plane, given from the film's centre.
+    #[inline(always)]
+    fn film(&self, d: D, place: Vec3<D::F>) -> [D::F; 2] {
+        [self.right, self.up].map(|edge| place.dot(d, edge) / edge.dot(d, edge))
+    }
+
+    /// The film's area.
+    #[inline(always)]
+    fn film_area(&self, d: D) -> D::F {
+        self.right.length(d) * self.up.length(d) * d.lit(4.0)
+    }
+
+    /// [`Camera::density`] of rays from a point through the film, whose distance to the point is the length of `forward` (PBRT 3,
+    /// section 16.1.1).
+    #[inline(always)]
+    fn density_from_point(&self, d: D, dir: Vec3<D::F>, distance: D::F) -> D::F {
+        let squared = self.forward.dot(d, self.forward);
+        let along = dir.dot(d, self.forward);
+        let cos = d.max(along / d.sqrt(squared), d.lit(1e-6));
+        let of_film = self.film_area(d) * cos * cos * cos;
+        squared / (of_film * distance * distance)
+    }
 }
 
 /// A pinhole.
@@ -109,6 +157,25 @@ impl<D: Domain> Camera<D> for Perspective {
         let dir = (camera.forward + camera.on_film(film)).normalize(d);
         PathRay::unbounded(d, camera.eye, dir)
     }
+
+    #[inline(always)]
+    fn sight(&self, d: D, point: Vec3<D::F>, _: [D::F; 2]) -> Sight<D> {
+        let camera = CameraRecord::uniform(d);
+        let towards = point - camera.eye;
+        let depth = towards.dot(d, camera.forward);
+        let is_before = d.lt(d.lit(0.0), depth);
+        let scale = camera.forward.dot(d, camera.forward) / d.select(is_before, depth, d.lit(1.0));
+        Sight {
+            from: camera.eye,
+            film: camera.film(d, towards.scale(scale)),
+            is_before,
+        }
+    }
+
+    #[inline(always)]
+    fn density(&self, d: D, dir: Vec3<D::F>, distance: D::F) -> D::F {
+        CameraRecord::uniform(d).density_from_point(d, dir, distance)
+    }
 }
 
 impl<D: Domain> Camera<D> for ThinLens {
@@ -117,10 +184,31 @@ impl<D: Domain> Camera<D> for ThinLens {
         let camera = CameraRecord::uniform(d);
         // What a pinhole sees in the plane of focus, every point of the lens sees in the same place of the film.
         let focus = (camera.forward + camera.on_film(film)).scale(camera.focus_distance);
-        let [x, y] = disc(d, lens).map(|c| c * camera.lens_radius);
-        let on_lens = camera.right.normalize(d).scale(x) + camera.up.normalize(d).scale(y);
+        let on_lens = camera.on_lens(d, lens);
         let dir = (focus - on_lens).normalize(d);
         PathRay::unbounded(d, camera.eye + on_lens, dir)
+    }
+
+    #[inline(always)]
+    fn sight(&self, d: D, point: Vec3<D::F>, lens: [D::F; 2]) -> Sight<D> {
+        let camera = CameraRecord::uniform(d);
+        let on_lens = camera.on_lens(d, lens);
+        let towards = point - (camera.eye + on_lens);
+        let depth = towards.dot(d, camera.forward);
+        let is_before = d.lt(d.lit(0.0), depth);
+        let scale = camera.focus_distance / d.select(is_before, depth, d.lit(1.0));
+        let focus = on_lens + towards.scale(scale);
+        let on_film = focus.scale(d.lit(1.0) / camera.focus_distance);
+        Sight {
+            from: camera.eye + on_lens,
+            film: camera.film(d, on_film),
+            is_before,
+        }
+    }
+
+    #[inline(always)]
+    fn density(&self, d: D, dir: Vec3<D::F>, distance: D::F) -> D::F {
+        CameraRecord::uniform(d).density_from_point(d, dir, distance)
     }
 
     #[inline(always)]
@@ -135,6 +223,23 @@ impl<D: Domain> Camera<D> for Orthographic {
         let camera = CameraRecord::uniform(d);
         let org = camera.eye + camera.on_film(film);
         PathRay::unbounded(d, org, camera.forward.normalize(d))
+    }
+
+    #[inline(always)]
+    fn sight(&self, d: D, point: Vec3<D::F>, _: [D::F; 2]) -> Sight<D> {
+        let camera = CameraRecord::uniform(d);
+        let towards = point - camera.eye;
+        let film = camera.film(d, towards);
+        Sight {
+            from: camera.eye + camera.on_film(film),
+            film,
+            is_before: d.lt(d.lit(0.0), towards.dot(d, camera.forward)),
+        }
+    }
+
+    #[inline(always)]
+    fn density(&self, d: D, _: Vec3<D::F>, _: D::F) -> D::F {
+        d.lit(1.0) / CameraRecord::uniform(d).film_area(d)
     }
 }
 
@@ -151,6 +256,35 @@ impl<D: Domain> Camera<D> for Panorama {
                 .scale(cos_latitude * sin_longitude)
             + camera.up.normalize(d).scale(sin_latitude);
         PathRay::unbounded(d, camera.eye, dir.normalize(d))
+    }
+
+    #[inline(always)]
+    fn sight(&self, d: D, point: Vec3<D::F>, _: [D::F; 2]) -> Sight<D> {
+        let camera = CameraRecord::uniform(d);
+        let towards = point - camera.eye;
+        let [along, across, above] =
+            [camera.forward, camera.right, camera.up].map(|axis| towards.dot(d, axis.normalize(d)));
+        let level = d.sqrt(d.fma(along, along, across * across));
+        let longitude = atan2(d, across, along);
+        let latitude = atan2(d, above, level);
+        Sight {
+            from: camera.eye,
+            film: [
+                longitude * d.lit(FRAC_1_PI),
+                latitude * d.lit(2.0 * FRAC_1_PI),
+            ],
+            is_before: d.truth(true),
+        }
+    }
+
+    #[inline(always)]
+    fn density(&self, d: D, dir: Vec3<D::F>, distance: D::F) -> D::F {
+        let camera = CameraRecord::uniform(d);
+        let sin = dir.dot(d, camera.up.normalize(d));
+        let cos = d.sqrt(d.max(d.lit(1.0) - sin * sin, d.lit(1e-9)));
+        // Film coordinates are π of longitude and π/2 of latitude, and the film is two of each.
+        let per_steradian = d.lit(0.5 * FRAC_1_PI * FRAC_1_PI) / cos;
+        per_steradian / (distance * distance)
     }
 }
 

@@ -7,7 +7,7 @@ use residual_accuracy::{Convergence, Measured};
 
 pub use crate::film::Pass;
 use crate::film::{Film, SampleSet, Sampling};
-use crate::tracer::TracerOptions;
+use crate::tracer::{PathOrigin, TracerOptions};
 
 /// Passes grow until one takes about this long, so that progress is shown, time limits are kept and a wish to stop is
 /// heard.
@@ -57,7 +57,7 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// What the tracer is told of a set of samples.
+    /// What the tracer is told of the paths from the camera in a set of samples.
     pub fn tracer(&self, set: SampleSet) -> TracerOptions {
         TracerOptions {
             image: self.size,
@@ -65,6 +65,7 @@ impl RenderOptions {
             max_depth: self.max_depth,
             roulette_from: self.roulette_from,
             reach: self.reach,
+            origin: PathOrigin::Camera,
         }
     }
 }
@@ -97,12 +98,14 @@ pub struct RenderReport {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Counters {
-    /// Rays from the camera.
+    /// Rays that begin paths: from the camera, or from lights.
     pub camera_rays: u64,
     /// Rays that continue paths.
     pub bounce_rays: u64,
-    /// Rays towards lights.
+    /// Rays towards lights; of light paths, towards the camera.
     pub shadow_rays: u64,
+    /// Contributions of light paths to pixels.
+    pub splats: u64,
     /// Seconds: making camera rays.
     pub emit: f64,
     /// Seconds: closest hits of camera rays.
@@ -140,6 +143,7 @@ impl Counters {
         self.camera_rays += o.camera_rays;
         self.bounce_rays += o.bounce_rays;
         self.shadow_rays += o.shadow_rays;
+        self.splats += o.splats;
     }
 }
 

@@ -8,6 +8,7 @@ mod bsdf_physics;
 mod bsdf_reciprocity;
 mod bsdf_sampling;
 mod bsdf_transmission;
+mod camera_sight;
 mod domain;
 mod domain_formulas;
 mod elementary;

@@ -40,6 +40,10 @@ impl TileRenderer for Clamped {
         self.renderer.layers()
     }
 
+    fn has_light_paths(&self) -> bool {
+        self.renderer.has_light_paths()
+    }
+
     fn render_tiles(
         &self,
         scene: &SceneView<'_>,

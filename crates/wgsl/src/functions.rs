@@ -12,7 +12,9 @@ use residual_render::program::{AlphaTestNode, BoxedMaterial, Interpreted, Progra
 use residual_render::renderer::Renderer;
 use residual_render::sampler::SampleKey;
 use residual_render::surface::{PathRay, SurfaceHit};
-use residual_render::tracer::{self, Features, Path, PathState, Settings, Step, Tracer};
+use residual_render::tracer::{
+    self, Features, Path, PathOrigin, PathState, Settings, Step, Tracer,
+};
 use residual_render::triangle;
 
 /// A recorded function with what is printed around it.
@@ -114,6 +116,7 @@ fn path(tape: &Tape) -> Path<Record<'_>> {
         ray: PathRay::unbounded(d, tape.vector("org"), tape.vector("dir")),
         throughput: tape.vector("throughput"),
         pdf: tape.real("pdf"),
+        rivals: d.lit(0.0),
         key: SampleKey {
             pixel: tape.word("pixel"),
             index: tape.word("index"),
@@ -132,6 +135,7 @@ fn settings(tape: &Tape) -> Settings<Record<'_>> {
         max_depth: tape.word("max_depth"),
         roulette_from: tape.word("roulette_from"),
         reach: tape.real("reach"),
+        origin: PathOrigin::Camera,
     }
 }
 
@@ -323,8 +327,9 @@ fn emit(structure: &Structure) -> Recorded {
         max_depth: d.uint(0),
         roulette_from: d.uint(0),
         reach: d.lit(0.0),
+        origin: PathOrigin::Camera,
     });
-    let path = tracer.on_emit(d, scene.camera(), pixel, sample);
+    let path = tracer.on_emit(d, scene.camera(), scene.lights(), pixel, sample);
     let outputs = Outputs::new()
         .vector("org", path.ray.org)
         .vector("dir", path.ray.dir)

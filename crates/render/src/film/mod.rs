@@ -152,6 +152,11 @@ impl Film {
         self.height
     }
 
+    /// Forgets the second set of samples: the stated error is then that of independent samples.
+    pub fn drop_second_set(&mut self) {
+        self.second = None;
+    }
+
     /// What it keeps beside radiance.
     pub fn layers(&self) -> Layers {
         self.layers
@@ -160,6 +165,11 @@ impl Film {
     /// The tiles.
     pub fn tiles(&self) -> &[FilmTile] {
         &self.tiles
+    }
+
+    /// Where the tiles lie, row by row from the top.
+    pub fn rects(&self) -> impl Iterator<Item = TileRect> {
+        self.tiles.iter().map(FilmTile::rect)
     }
 
     /// The tiles, to be rendered into.

@@ -2,7 +2,7 @@
 //!
 //! Points are sampled uniformly by area.
 
-use super::{LightKind, LightSample};
+use super::{Emission, EmissionNumbers, LightKind, LightSample};
 use crate::domain::{Buffer, Domain};
 use crate::math::{Vec3, warp};
 use crate::record::record;
@@ -57,6 +57,40 @@ impl<D: Domain, E: ColorSource<D>> LightKind<D> for Area<E> {
             radiance: self.emission.color(d, &there).only(d, emits & faces),
             pdf: distance * distance / safe,
             delta: d.truth(false),
+            spread: spread(d, &record, there.cos_geometric),
+        }
+    }
+
+    #[inline(always)]
+    fn emit(&self, d: D, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D> {
+        let record = AreaRecord::load_at(d, Buffer::Lights, record);
+        let (b1, b2) = warp::triangle(d, u.place);
+        let (zero, one, two) = (d.lit(0.0), d.lit(1.0), d.lit(2.0));
+        // Of a triangle that emits on both sides, the first number also says on which.
+        let is_double_sided = d.eq_u(record.double_sided, d.uint(1));
+        let doubled = u.direction[0] * two;
+        let is_back = is_double_sided & d.le(one, doubled);
+        let halved = doubled - d.select(is_back, one, zero);
+        let first = d.select(is_double_sided, halved, u.direction[0]);
+        let local = warp::cosine_hemisphere(d, [first, u.direction[1]]);
+        let (there, dir) = Surface::left(
+            d,
+            self.attributes,
+            record.triangle,
+            [b1, b2],
+            (local, is_back),
+        );
+        let sides = d.select(is_double_sided, two, one);
+        let cos = d.max(there.cos_geometric, d.lit(1e-9));
+        Emission {
+            ray: PathRay::unbounded(d, there.spawn(d, dir), dir),
+            flux: self
+                .emission
+                .color(d, &there)
+                .scale(d.lit(std::f64::consts::PI) * there.area * sides),
+            spread: spread(d, &record, cos),
+            found: one / d.max(there.area * cos, d.lit(1e-37)),
+            infinite: d.truth(false),
         }
     }
 
@@ -65,4 +99,19 @@ impl<D: Domain, E: ColorSource<D>> LightKind<D> for Area<E> {
         let distance = (seen.point - ray.org).length(d);
         Some(distance * distance / d.max(seen.cos_geometric * seen.area, d.lit(1e-37)))
     }
+
+    #[inline(always)]
+    fn spread(&self, d: D, record: D::U, seen: &Surface<D>) -> Option<D::F> {
+        let record = AreaRecord::load_at(d, Buffer::Lights, record);
+        Some(spread(d, &record, seen.cos_geometric))
+    }
+}
+
+/// Density of a direction of this cosine in which light leaves the triangle, per steradian: in proportion to the cosine, on
+/// either side that emits.
+#[inline(always)]
+fn spread<D: Domain>(d: D, record: &AreaRecord<D>, cos: D::F) -> D::F {
+    let is_double_sided = d.eq_u(record.double_sided, d.uint(1));
+    let share = d.select(is_double_sided, d.lit(0.5), d.lit(1.0));
+    warp::cosine_hemisphere_pdf(d, cos) * share
 }

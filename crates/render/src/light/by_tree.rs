@@ -1,7 +1,7 @@
 //! Kinds of lights that are picked from a tree.
 
 use super::tree::LightTree;
-use super::{Background, KindIndex, LightKinds, LightSample, Pick};
+use super::{Background, Emission, EmissionNumbers, KindIndex, LightKinds, LightSample, Pick};
 use crate::domain::Domain;
 use crate::math::Vec3;
 use crate::surface::{PathRay, Surface};
@@ -44,6 +44,16 @@ impl<D: Domain, K: LightKinds<D>> LightKinds<D> for ByTree<K> {
         self.kinds.sample(d, kind, record, from, u)
     }
     #[inline(always)]
+    fn emit(
+        &self,
+        d: D,
+        kind: KindIndex<D::U>,
+        record: D::U,
+        u: EmissionNumbers<D::F>,
+    ) -> Emission<D> {
+        self.kinds.emit(d, kind, record, u)
+    }
+    #[inline(always)]
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
         self.kinds.background(d, dir)
     }
@@ -57,5 +67,9 @@ impl<D: Domain, K: LightKinds<D>> LightKinds<D> for ByTree<K> {
         seen: &Surface<D>,
     ) -> Option<D::F> {
         self.kinds.density(d, kind, record, ray, seen)
+    }
+    #[inline(always)]
+    fn spread(&self, d: D, kind: KindIndex<D::U>, record: D::U, seen: &Surface<D>) -> Option<D::F> {
+        self.kinds.spread(d, kind, record, seen)
     }
 }

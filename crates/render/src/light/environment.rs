@@ -4,7 +4,7 @@
 //! Texels are picked from an alias table by the integral of the bilinear image over each, so that every direction
 //! that shines can be sampled; the position within the texel is uniform.
 
-use super::{Background, LightKind, LightSample};
+use super::{Background, Emission, EmissionNumbers, LightKind, LightSample};
 use crate::alias_table::{AliasEntry, AliasTable, Outcome};
 use crate::domain::{Buffer, Domain};
 use crate::math::elementary::{atan2, sincos_turns};
@@ -148,7 +148,17 @@ impl<D: Domain> LightKind<D> for Environment {
             radiance: header.radiance(d, uv),
             pdf: solid_angle_pdf(d, density, sin_theta),
             delta: d.truth(false),
+            spread: d.lit(0.0),
         }
+    }
+
+    #[inline(always)]
+    fn emit(&self, d: D, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D> {
+        let [x, y] = u.place;
+        let nowhere = Vec3::splat(d.lit(0.0));
+        let sample = self.sample(d, record, nowhere, [x, y, u.third]);
+        let weight = sample.radiance.scale(d.lit(1.0) / sample.pdf);
+        Emission::from_afar(d, sample.wi, weight, sample.pdf, u.direction)
     }
 
     #[inline(always)]

@@ -6,6 +6,7 @@
 
 mod area;
 mod by_tree;
+mod emission;
 mod environment;
 mod pick;
 mod punctual;
@@ -16,6 +17,7 @@ mod tree;
 
 pub use area::{Area, AreaRecord};
 pub use by_tree::ByTree;
+pub use emission::{Emission, EmissionNumbers, NOT_FOUND, SceneSphereRecord, emit};
 pub use environment::{Environment, EnvironmentHeader, set_environment};
 pub use pick::{
     LIGHT_WORDS, LightRecord, Pick, PickHeader, pick, pick_probability, push_light, set_picks,
@@ -25,6 +27,7 @@ pub use sized::{SphericalPoint, SphericalSpot, Sun};
 pub use tree::{ClusterRecord, EVERYWHERE, LEAF, LightTree, LightTreeHeader, set_light_tree};
 
 use crate::domain::{Bundle, Domain};
+use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
 use crate::surface::{PathRay, Surface};
 use crate::triangle::NO_LIGHT;
@@ -44,6 +47,8 @@ pub struct LightSample<D: Domain> {
     pub pdf: D::F,
     /// No BSDF sample can find this light.
     pub delta: D::M,
+    /// Density with which light that leaves its point has the direction back, per steradian; 0 where `infinite`.
+    pub spread: D::F,
 }
 
 impl<D: Domain> Bundle<D> for LightSample<D> {
@@ -56,6 +61,7 @@ impl<D: Domain> Bundle<D> for LightSample<D> {
             radiance: Vec3::choose(d, mask, a.radiance, b.radiance),
             pdf: d.select(mask, a.pdf, b.pdf),
             delta: d.select_mask(mask, a.delta, b.delta),
+            spread: d.select(mask, a.spread, b.spread),
         }
     }
 }
@@ -81,6 +87,9 @@ pub trait LightKind<D: Domain> {
     /// Samples the light whose record starts at word `record` for the point `from`.
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D>;
 
+    /// Samples the light whose record starts at word `record`: what leaves it.
+    fn emit(&self, d: D, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D>;
+
     /// What a ray in the unit direction `dir` that hits nothing sees of lights of this kind.
     fn background(&self, _: D, _dir: Vec3<D::F>) -> Option<Background<D>> {
         None
@@ -89,6 +98,12 @@ pub trait LightKind<D: Domain> {
     /// Density, per steradian, with which [`sample`](LightKind::sample) proposes to the origin of `ray` the direction
     /// of `ray`, which met the light with this record at `seen`. `None` for lights that no ray can meet.
     fn density(&self, _: D, _record: D::U, _ray: &PathRay<D>, _seen: &Surface<D>) -> Option<D::F> {
+        None
+    }
+
+    /// Density, per steradian, with which light that leaves the light with this record at `seen` goes back along the ray that met
+    /// it. `None` for lights that no ray can meet.
+    fn spread(&self, _: D, _record: D::U, _seen: &Surface<D>) -> Option<D::F> {
         None
     }
 }
@@ -140,6 +155,14 @@ pub trait LightKinds<D: Domain> {
         from: Vec3<D::F>,
         u: [D::F; 3],
     ) -> LightSample<D>;
+    /// Samples what leaves a light of kind `kind`.
+    fn emit(
+        &self,
+        d: D,
+        kind: KindIndex<D::U>,
+        record: D::U,
+        u: EmissionNumbers<D::F>,
+    ) -> Emission<D>;
     /// The background of the first kind that has one.
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>>;
     /// [`LightKind::density`] of a light of kind `kind`; `None` if no ray can meet any kind.
@@ -151,6 +174,8 @@ pub trait LightKinds<D: Domain> {
         ray: &PathRay<D>,
         seen: &Surface<D>,
     ) -> Option<D::F>;
+    /// [`LightKind::spread`] of a light of kind `kind`; `None` if no ray can meet any kind.
+    fn spread(&self, d: D, kind: KindIndex<D::U>, record: D::U, seen: &Surface<D>) -> Option<D::F>;
 }
 
 /// The density of a light that is of the first kind of a list, or of one of the rest.
@@ -193,6 +218,19 @@ impl<D: Domain> LightKinds<D> for () {
             radiance: zero,
             pdf: d.lit(1.0),
             delta: d.truth(true),
+            spread: d.lit(0.0),
+        }
+    }
+    #[inline(always)]
+    fn emit(&self, d: D, _: KindIndex<D::U>, _: D::U, _: EmissionNumbers<D::F>) -> Emission<D> {
+        let (zero, one) = (d.lit(0.0), d.lit(1.0));
+        let nothing = Vec3::splat(zero);
+        Emission {
+            ray: PathRay::unbounded(d, nothing, vec3(zero, zero, one)),
+            flux: nothing,
+            spread: one,
+            found: one,
+            infinite: d.truth(true),
         }
     }
     #[inline(always)]
@@ -208,6 +246,10 @@ impl<D: Domain> LightKinds<D> for () {
         _: &PathRay<D>,
         _: &Surface<D>,
     ) -> Option<D::F> {
+        None
+    }
+    #[inline(always)]
+    fn spread(&self, _: D, _: KindIndex<D::U>, _: D::U, _: &Surface<D>) -> Option<D::F> {
         None
     }
 }
@@ -241,6 +283,23 @@ impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
         )
     }
     #[inline(always)]
+    fn emit(
+        &self,
+        d: D,
+        kind: KindIndex<D::U>,
+        record: D::U,
+        u: EmissionNumbers<D::F>,
+    ) -> Emission<D> {
+        if self.1.is_empty() {
+            return self.0.emit(d, record, u);
+        }
+        d.branch(
+            kind.is_first(d),
+            || self.0.emit(d, record, u),
+            || self.1.emit(d, kind.in_rest(), record, u),
+        )
+    }
+    #[inline(always)]
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
         self.0
             .background(d, dir)
@@ -257,6 +316,12 @@ impl<D: Domain, A: LightKind<D>, B: LightKinds<D>> LightKinds<D> for (A, B) {
     ) -> Option<D::F> {
         let first = self.0.density(d, record, ray, seen);
         let rest = self.1.density(d, kind.in_rest(), record, ray, seen);
+        either_density(d, kind, first, rest)
+    }
+    #[inline(always)]
+    fn spread(&self, d: D, kind: KindIndex<D::U>, record: D::U, seen: &Surface<D>) -> Option<D::F> {
+        let first = self.0.spread(d, record, seen);
+        let rest = self.1.spread(d, kind.in_rest(), record, seen);
         either_density(d, kind, first, rest)
     }
 }
@@ -287,6 +352,23 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
             ),
         }
     }
+    fn emit(
+        &self,
+        d: D,
+        kind: KindIndex<D::U>,
+        record: D::U,
+        u: EmissionNumbers<D::F>,
+    ) -> Emission<D> {
+        match self {
+            [] => ().emit(d, kind, record, u),
+            [last] => last.emit(d, record, u),
+            [head, tail @ ..] => d.branch(
+                kind.is_first(d),
+                || head.emit(d, record, u),
+                || tail.emit(d, kind.in_rest(), record, u),
+            ),
+        }
+    }
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
         self.iter().find_map(|kind| kind.background(d, dir))
     }
@@ -301,6 +383,12 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
         let (head, tail) = self.split_first()?;
         let first = head.density(d, record, ray, seen);
         let rest = tail.density(d, kind.in_rest(), record, ray, seen);
+        either_density(d, kind, first, rest)
+    }
+    fn spread(&self, d: D, kind: KindIndex<D::U>, record: D::U, seen: &Surface<D>) -> Option<D::F> {
+        let (head, tail) = self.split_first()?;
+        let first = head.spread(d, record, seen);
+        let rest = tail.spread(d, kind.in_rest(), record, seen);
         either_density(d, kind, first, rest)
     }
 }
@@ -357,6 +445,19 @@ pub fn density<D: Domain, L: LightKinds<D> + ?Sized>(
         }
         None => d.lit(0.0),
     }
+}
+
+/// Density, per steradian, with which light that leaves the surface at `seen` goes back along the ray that met it; 0 where that is
+/// no light.
+#[inline(always)]
+pub fn spread<D: Domain, L: LightKinds<D> + ?Sized>(d: D, lights: &L, seen: &Surface<D>) -> D::F {
+    let no_light = d.eq_u(seen.light, d.uint(NO_LIGHT));
+    let light = d.select_u(no_light, d.uint(0), seen.light);
+    let (kind, record) = pick::find(d, light);
+    let kind = KindIndex { kind, first: 0 };
+    let spread = lights.spread(d, kind, record, seen);
+    let spread = spread.unwrap_or_else(|| d.lit(0.0));
+    d.select(no_light, d.lit(0.0), spread)
 }
 
 /// What a ray that hits nothing sees of the lights. The density is that with which light sampling proposes its direction to its

@@ -4,10 +4,13 @@
 //! Cosines of small angles are 1 in 32 bits; so the formula is written in versines, 1 − cos θ = |a + b|²/2 of unit vectors
 //! a and −b, which keep their digits in cones of any width.
 
-use super::{LightKind, LightSample};
+use super::sized::in_cone;
+use super::{Emission, EmissionNumbers, LightKind, LightSample, NOT_FOUND};
 use crate::domain::{Buffer, Domain};
-use crate::math::Vec3;
+use crate::math::vec3::vec3;
+use crate::math::{Color, Vec3};
 use crate::record::record;
+use crate::surface::PathRay;
 
 /// Shines everywhere from a point.
 #[derive(Clone, Copy, Debug)]
@@ -126,7 +129,47 @@ impl<D: Domain> PunctualRecord<D> {
             radiance: self.intensity.scale(one / (distance * distance)),
             pdf: one,
             delta: d.truth(true),
+            spread: d.lit(EVERYWHERE),
         }
+    }
+
+    /// What leaves a light at `place` in a direction of a cone around the unit vector `axis` that shines everywhere, with the
+    /// versine of the direction. `widest` is the versine of the cone's half-angle.
+    #[inline(always)]
+    pub(super) fn leaving(
+        &self,
+        d: D,
+        (axis, widest): (Vec3<D::F>, D::F),
+        u: [D::F; 2],
+    ) -> (Emission<D>, D::F) {
+        let (dir, versine) = in_cone(d, axis, widest, u);
+        let solid_angle = widest * d.lit(TURN);
+        let emission = Emission {
+            ray: PathRay::unbounded(d, self.position, dir),
+            flux: self.intensity.scale(solid_angle),
+            spread: d.lit(1.0) / solid_angle,
+            found: d.lit(NOT_FOUND),
+            infinite: d.truth(false),
+        };
+        (emission, versine)
+    }
+
+    /// What leaves a spot around the unit vector `axis`.
+    #[inline(always)]
+    pub(super) fn leaving_spot(&self, d: D, axis: Vec3<D::F>, u: [D::F; 2]) -> Emission<D> {
+        let (everywhere, versine) = self.leaving(d, (axis, self.edge), u);
+        Emission {
+            flux: self.fallen_off(d, versine, everywhere.flux),
+            ..everywhere
+        }
+    }
+
+    /// What is left of `color` at this versine to the axis of a spot.
+    #[inline(always)]
+    fn fallen_off(&self, d: D, versine: D::F, color: Color<D::F>) -> Color<D::F> {
+        let falloff = (self.edge - versine) * self.scale;
+        let falloff = d.min(d.max(falloff, d.lit(0.0)), d.lit(1.0));
+        color.scale(falloff * falloff)
     }
 
     /// What is left of a sample of a light that shines everywhere, where it shines into the cone of the record around the unit
@@ -140,19 +183,36 @@ impl<D: Domain> PunctualRecord<D> {
     ) -> LightSample<D> {
         let across = axis + everywhere.wi;
         let versine = across.dot(d, across) * d.lit(0.5);
-        let falloff = (self.edge - versine) * self.scale;
-        let falloff = d.min(d.max(falloff, d.lit(0.0)), d.lit(1.0));
         LightSample {
-            radiance: everywhere.radiance.scale(falloff * falloff),
+            radiance: self.fallen_off(d, versine, everywhere.radiance),
+            spread: d.lit(1.0) / (self.edge * d.lit(TURN)),
             ..everywhere
         }
     }
+}
+
+/// 2π: the solid angle of a cone whose half-angle has a versine of 1.
+const TURN: f64 = std::f64::consts::TAU;
+/// Density of directions that are evenly spread over the sphere, per steradian.
+pub(super) const EVERYWHERE: f64 = 0.5 / TURN;
+
+/// The cone of all directions.
+#[inline(always)]
+pub(super) fn all_directions<D: Domain>(d: D) -> (Vec3<D::F>, D::F) {
+    let zero = d.lit(0.0);
+    (vec3(zero, zero, d.lit(1.0)), d.lit(2.0))
 }
 
 impl<D: Domain> LightKind<D> for Point {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
         PunctualRecord::of_light(d, record).arriving_at(d, from)
+    }
+
+    #[inline(always)]
+    fn emit(&self, d: D, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D> {
+        let record = PunctualRecord::of_light(d, record);
+        record.leaving(d, all_directions(d), u.direction).0
     }
 }
 
@@ -161,6 +221,12 @@ impl<D: Domain> LightKind<D> for Spot {
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, _: [D::F; 3]) -> LightSample<D> {
         let record = PunctualRecord::of_light(d, record);
         record.within_cone(d, record.axis, record.arriving_at(d, from))
+    }
+
+    #[inline(always)]
+    fn emit(&self, d: D, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D> {
+        let record = PunctualRecord::of_light(d, record);
+        record.leaving_spot(d, record.axis, u.direction)
     }
 }
 
@@ -175,6 +241,14 @@ impl<D: Domain> LightKind<D> for Directional {
             radiance: record.intensity,
             pdf: d.lit(1.0),
             delta: d.truth(true),
+            spread: d.lit(0.0),
         }
+    }
+
+    #[inline(always)]
+    fn emit(&self, d: D, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D> {
+        let record = PunctualRecord::of_light(d, record);
+        let found = d.lit(NOT_FOUND);
+        Emission::from_afar(d, record.position, record.intensity, found, u.direction)
     }
 }

@@ -4,11 +4,12 @@
 //! them, as they do not see lights without a size, whose records these lights have. What a sample brings is therefore
 //! radiance over density, which is finite for any size, with 1 for its density.
 
-use super::punctual::PunctualRecord;
-use super::{LightKind, LightSample};
+use super::punctual::{EVERYWHERE, PunctualRecord, all_directions};
+use super::{Emission, EmissionNumbers, LightKind, LightSample, NOT_FOUND};
 use crate::domain::{Bundle, Domain};
 use crate::math::vec3::vec3;
 use crate::math::{Frame, Vec3, warp};
+use crate::surface::PathRay;
 
 /// Shines from a disc of the sky, evenly bright.
 #[derive(Clone, Copy, Debug)]
@@ -23,9 +24,14 @@ pub struct SphericalSpot;
 /// A unit direction in a cone around the unit vector `axis`, evenly distributed over the cone's solid angle, and the versine of
 /// its angle to the axis. `widest` is the versine of the cone's half-angle: narrow cones keep their digits.
 #[inline(always)]
-fn in_cone<D: Domain>(d: D, axis: Vec3<D::F>, widest: D::F, u: [D::F; 3]) -> (Vec3<D::F>, D::F) {
+pub(super) fn in_cone<D: Domain>(
+    d: D,
+    axis: Vec3<D::F>,
+    widest: D::F,
+    u: [D::F; 2],
+) -> (Vec3<D::F>, D::F) {
     let versine = u[0] * widest;
-    let [x, y] = warp::disc(d, [u[0], u[1]]);
+    let [x, y] = warp::disc(d, u);
     // sin² θ = v·(2 − v), of which the disc has the share of u.
     let sine = d.sqrt(widest * (d.lit(2.0) - versine));
     let local = vec3(x * sine, y * sine, d.lit(1.0) - versine);
@@ -36,7 +42,7 @@ impl<D: Domain> LightKind<D> for Sun {
     #[inline(always)]
     fn sample(&self, d: D, record: D::U, _: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D> {
         let record = PunctualRecord::of_light(d, record);
-        let (wi, _) = in_cone(d, record.position, record.edge, u);
+        let (wi, _) = in_cone(d, record.position, record.edge, [u[0], u[1]]);
         LightSample {
             wi,
             position: wi,
@@ -44,7 +50,16 @@ impl<D: Domain> LightKind<D> for Sun {
             radiance: record.intensity,
             pdf: d.lit(1.0),
             delta: d.truth(true),
+            spread: d.lit(0.0),
         }
+    }
+
+    #[inline(always)]
+    fn emit(&self, d: D, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D> {
+        let record = PunctualRecord::of_light(d, record);
+        let (wi, _) = in_cone(d, record.position, record.edge, u.place);
+        let found = d.lit(NOT_FOUND);
+        Emission::from_afar(d, wi, record.intensity, found, u.direction)
     }
 }
 
@@ -78,7 +93,7 @@ fn sphere<D: Domain>(
     let sine_squared = d.min(radius_squared / squared, one);
     let more_than_one = one + d.sqrt(one - sine_squared);
     let widest = d.select(is_within, two, sine_squared / more_than_one);
-    let (wi, versine) = in_cone(d, axis, widest, u);
+    let (wi, versine) = in_cone(d, axis, widest, [u[0], u[1]]);
     // From the middle of the chord to its end that is seen.
     let half_chord = radius_squared - squared * versine * (two - versine);
     let half_chord = d.sqrt(d.max(half_chord, d.lit(0.0)));
@@ -96,8 +111,24 @@ fn sphere<D: Domain>(
         radiance: record.intensity.scale(weight),
         pdf: one,
         delta: d.truth(true),
+        spread: d.lit(EVERYWHERE),
     };
     (sample, record.axis.scale(one / radius))
+}
+
+/// Light that leaves a point light's place, as light that leaves a sphere around it: in a direction of the same distribution, from
+/// a place evenly distributed over what is seen of the sphere from there.
+#[inline(always)]
+fn off_sphere<D: Domain>(d: D, radius: D::F, point: Emission<D>, u: [D::F; 2]) -> Emission<D> {
+    let dir = point.ray.dir;
+    let frame = Frame::around(d, dir);
+    let [x, y] = warp::disc(d, u).map(|c| c * radius);
+    let ahead = d.sqrt(d.lit(1.0) - u[0]) * radius;
+    let place = frame.to_world(vec3(x, y, ahead));
+    Emission {
+        ray: PathRay::unbounded(d, point.ray.org + place, dir),
+        ..point
+    }
 }
 
 impl<D: Domain> LightKind<D> for SphericalPoint {
@@ -105,6 +136,13 @@ impl<D: Domain> LightKind<D> for SphericalPoint {
     fn sample(&self, d: D, record: D::U, from: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D> {
         let record = PunctualRecord::of_light(d, record);
         sphere(d, &record, from, u).0
+    }
+
+    #[inline(always)]
+    fn emit(&self, d: D, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D> {
+        let record = PunctualRecord::of_light(d, record);
+        let (point, _) = record.leaving(d, all_directions(d), u.direction);
+        off_sphere(d, record.axis.length(d), point, u.place)
     }
 }
 
@@ -114,5 +152,14 @@ impl<D: Domain> LightKind<D> for SphericalSpot {
         let record = PunctualRecord::of_light(d, record);
         let (everywhere, axis) = sphere(d, &record, from, u);
         record.within_cone(d, axis, everywhere)
+    }
+
+    #[inline(always)]
+    fn emit(&self, d: D, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D> {
+        let record = PunctualRecord::of_light(d, record);
+        let radius = record.axis.length(d);
+        let axis = record.axis.scale(d.lit(1.0) / radius);
+        let point = record.leaving_spot(d, axis, u.direction);
+        off_sphere(d, radius, point, u.place)
     }
 }

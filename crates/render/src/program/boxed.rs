@@ -6,9 +6,9 @@ use crate::bsdf::{
     AnyInterface, Bsdf, BsdfKind, BsdfSample, BsdfValue, Fresnel, LayerFrame, Roughness,
     SchlickCurve,
 };
-use crate::camera::Camera;
+use crate::camera::{Camera, Sight};
 use crate::domain::Domain;
-use crate::light::{Background, LightKind, LightSample};
+use crate::light::{Background, Emission, EmissionNumbers, LightKind, LightSample};
 use crate::math::{Color, Frame, Vec3};
 use crate::surface::{Attributes, PathRay, Surface, SurfaceHit};
 use crate::texture::{
@@ -124,12 +124,16 @@ entered!(ScalarSource {
 });
 entered!(LightKind {
     fn sample(d, record: D::U, from: Vec3<D::F>, u: [D::F; 3]) -> LightSample<D>;
+    fn emit(d, record: D::U, u: EmissionNumbers<D::F>) -> Emission<D>;
     fn background(d, dir: Vec3<D::F>) -> Option<Background<D>>;
     fn density(d, record: D::U, ray: &PathRay<D>, seen: &Surface<D>) -> Option<D::F>;
+    fn spread(d, record: D::U, seen: &Surface<D>) -> Option<D::F>;
     const fn takes_three() -> bool;
 });
 entered!(Camera {
     fn ray(d, film: [D::F; 2], lens: [D::F; 2]) -> PathRay<D>;
+    fn sight(d, point: Vec3<D::F>, lens: [D::F; 2]) -> Sight<D>;
+    fn density(d, dir: Vec3<D::F>, distance: D::F) -> D::F;
     const fn has_lens() -> bool;
 });
 entered!(AlphaTest {

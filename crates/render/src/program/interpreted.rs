@@ -1,5 +1,6 @@
 //! The interpreted renderer: a scene's structure as boxed nodes. It starts at once and needs no compiler.
 
+use super::any_camera::AnyCamera;
 use super::boxed::Boxing;
 use super::{BoxedLights, BoxedMaterial, Structure};
 use crate::alpha::{AlphaTest, Candidate, alpha_test};
@@ -18,6 +19,7 @@ pub struct Interpreted<'a, D: Domain> {
     alpha_tests: Vec<Option<Box<dyn AlphaTest<Scalar<'a>> + Send + Sync + 'a>>>,
     lights: BoxedLights<'a, D>,
     camera: Box<dyn Camera<D> + Send + Sync + 'a>,
+    any_camera: AnyCamera,
     sampler: AnySampler,
     tracer: TracerNode,
     between: Between,
@@ -35,6 +37,7 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
             alpha_tests: alpha_tests.collect(),
             lights: BoxedLights::new(structure),
             camera: structure.camera.boxed(),
+            any_camera: AnyCamera::from(&structure.camera),
             sampler: structure.sampler,
             tracer: structure.tracer,
             between: structure.between,
@@ -45,7 +48,7 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
 
 impl<'a, D: Domain + 'a> Renderer<D> for Interpreted<'a, D> {
     type Camera = Box<dyn Camera<D> + Send + Sync + 'a>;
-    type Tracer = Layered<AnyTracer<D, AnySampler>, Layers>;
+    type Tracer = Layered<AnyTracer<D, AnySampler, AnyCamera>, Layers>;
     type Lights = BoxedLights<'a, D>;
 
     fn camera(&self) -> &Self::Camera {
@@ -53,7 +56,9 @@ impl<'a, D: Domain + 'a> Renderer<D> for Interpreted<'a, D> {
     }
     fn tracer(&self, settings: Settings<D>) -> Self::Tracer {
         Layered {
-            tracer: self.tracer.tracer(self.between, self.sampler, settings),
+            tracer: self
+                .tracer
+                .tracer(self.between, self.sampler, settings, self.any_camera),
             layers: self.layers,
         }
     }

@@ -3,7 +3,10 @@
 use super::Structure;
 use super::boxed::Boxing;
 use crate::domain::Domain;
-use crate::light::{Background, KindIndex, LightKind, LightKinds, LightSample, LightTree, Pick};
+use crate::light::{
+    Background, Emission, EmissionNumbers, KindIndex, LightKind, LightKinds, LightSample,
+    LightTree, Pick,
+};
 use crate::math::Vec3;
 use crate::surface::{PathRay, Surface};
 
@@ -55,6 +58,15 @@ impl<D: Domain> LightKinds<D> for BoxedLights<'_, D> {
     ) -> LightSample<D> {
         self.kinds[..].sample(d, kind, record, from, u)
     }
+    fn emit(
+        &self,
+        d: D,
+        kind: KindIndex<D::U>,
+        record: D::U,
+        u: EmissionNumbers<D::F>,
+    ) -> Emission<D> {
+        self.kinds[..].emit(d, kind, record, u)
+    }
     fn background(&self, d: D, dir: Vec3<D::F>) -> Option<Background<D>> {
         self.kinds[..].background(d, dir)
     }
@@ -67,5 +79,8 @@ impl<D: Domain> LightKinds<D> for BoxedLights<'_, D> {
         seen: &Surface<D>,
     ) -> Option<D::F> {
         self.kinds[..].density(d, kind, record, ray, seen)
+    }
+    fn spread(&self, d: D, kind: KindIndex<D::U>, record: D::U, seen: &Surface<D>) -> Option<D::F> {
+        self.kinds[..].spread(d, kind, record, seen)
     }
 }

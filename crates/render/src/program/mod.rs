@@ -1,5 +1,6 @@
 //! The structure of a scene as data: what the plan decides, emitters print and interpreters build.
 
+mod any_camera;
 mod boxed;
 mod interpreted;
 mod lights;
@@ -8,6 +9,7 @@ mod nodes;
 mod table;
 mod walk;
 
+pub use any_camera::AnyCamera;
 pub use interpreted::Interpreted;
 pub use lights::BoxedLights;
 pub use material::BoxedMaterial;

@@ -41,6 +41,8 @@ pub struct Surface<D: Domain> {
     pub frame: Frame<D::F>,
     /// The shading frame of the mesh, without what maps change of it.
     pub mesh_frame: Frame<D::F>,
+    /// The normals of both frames before they were tilted until the way back was above them.
+    pub untilted: [Vec3<D::F>; 2],
     /// The ray came from the front (counter-clockwise) side.
     pub front: D::M,
     /// Cosine between the geometric normal and the way back, ≥ 0.
@@ -94,15 +96,18 @@ impl<D: Domain> Surface<D> {
 
         // Which side a stored normal is on is the file's affair, and files err: it is turned to the side of the
         // geometric normal, which follows the winding alone.
-        let (shading_normal, turned) = if attributes.normals {
+        let (untilted, turned) = if attributes.normals {
             let normals = vertices.map(|vertex| NormalRecord::load(d, vertex));
             let normals = Corners::new(normals, &place.weights);
             let stored = normals.vector(d, |corner| corner.normal).normalize_any(d);
             let turned = d.lt(stored.dot(d, geometric_normal), zero);
-            let normal = stored.map(|c| d.select(turned, -c, c));
-            (shading_frame::visible(d, normal, wo), turned)
+            (stored.map(|c| d.select(turned, -c, c)), turned)
         } else {
             (geometric_normal, !front)
+        };
+        let shading_normal = match attributes.normals {
+            true => shading_frame::visible(d, untilted, wo),
+            false => geometric_normal,
         };
         let frame = if attributes.tangents {
             let tangents = vertices.map(|vertex| TangentRecord::load(d, vertex));
@@ -149,6 +154,7 @@ impl<D: Domain> Surface<D> {
             geometric_normal,
             frame,
             mesh_frame: frame,
+            untilted: [untilted; 2],
             front,
             cos_geometric: d.abs(cos_outward),
             uv,
@@ -192,17 +198,55 @@ impl<D: Domain> Surface<D> {
         Self::at(d, attributes, &place, prim, place.point - from)
     }
 
+    /// The place at barycentric (u, v) of triangle `prim` as light leaves it: in a direction given around the triangle's normal, or,
+    /// where the mask holds, around the opposite one. Also that direction.
+    #[inline(always)]
+    pub fn left(
+        d: D,
+        attributes: Attributes,
+        prim: D::U,
+        [u, v]: [D::F; 2],
+        (local, back): (Vec3<D::F>, D::M),
+    ) -> (Self, Vec3<D::F>) {
+        let place = Place::new(d, &SurfaceHit { u, v, prim });
+        let outward = place.normal.normalize_any(d);
+        let normal = outward.map(|c| d.select(back, -c, c));
+        let dir = Frame::around(d, normal).to_world(local).normalize(d);
+        (Self::at(d, attributes, &place, prim, -dir), dir)
+    }
+
+    /// The surface as a ray sees it that comes from the unit direction `wo`, on whichever side that is.
+    #[inline(always)]
+    pub fn seen_along(&self, d: D, wo: Vec3<D::F>) -> Self {
+        let is_beyond = d.lt(self.geometric_normal.dot(d, wo), d.lit(0.0));
+        let turned = |v: Vec3<D::F>| v.map(|c| d.select(is_beyond, -c, c));
+        let untilted = self.untilted.map(turned);
+        let other = |frame: &Frame<D::F>, normal: Vec3<D::F>| {
+            shading_frame::with_normal(d, frame, normal, wo)
+        };
+        Self {
+            front: d.select_mask(is_beyond, !self.front, self.front),
+            geometric_normal: turned(self.geometric_normal),
+            frame: other(&self.frame, untilted[0]),
+            mesh_frame: other(&self.mesh_frame, untilted[1]),
+            untilted,
+            ..*self
+        }
+    }
+
     /// Replaces the shading normal, given in the shading frame (a normal map's value).
     #[inline(always)]
     pub fn with_normal(mut self, d: D, local: Vec3<D::F>, wo: Vec3<D::F>) -> Self {
-        self.frame = shading_frame::with_normal(d, &self.frame, local, wo);
+        self.untilted[0] = shading_frame::mapped(d, &self.frame, local);
+        self.frame = shading_frame::with_normal(d, &self.frame, self.untilted[0], wo);
         self
     }
 
     /// The shading frame with a normal that is given in that of the mesh.
     #[inline(always)]
     pub fn mapped_frame(&self, d: D, local: Vec3<D::F>, wo: Vec3<D::F>) -> Frame<D::F> {
-        shading_frame::with_normal(d, &self.mesh_frame, local, wo)
+        let normal = shading_frame::mapped(d, &self.mesh_frame, local);
+        shading_frame::with_normal(d, &self.mesh_frame, normal, wo)
     }
 
     /// Turns the tangent to a direction given along tangent and bitangent.

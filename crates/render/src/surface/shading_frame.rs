@@ -34,15 +34,21 @@ pub(super) fn along_tangent<D: Domain>(
     }
 }
 
-/// The frame with a normal that is given in `frame` (a normal map's value), as visible from `wo`.
+/// A normal that is given in a frame (a normal map's value), world space.
+#[inline(always)]
+pub(super) fn mapped<D: Domain>(d: D, frame: &Frame<D::F>, local: Vec3<D::F>) -> Vec3<D::F> {
+    frame.to_world(local).normalize_any(d)
+}
+
+/// The frame with another normal, as visible from `wo`.
 #[inline(always)]
 pub(super) fn with_normal<D: Domain>(
     d: D,
     frame: &Frame<D::F>,
-    local: Vec3<D::F>,
+    normal: Vec3<D::F>,
     wo: Vec3<D::F>,
 ) -> Frame<D::F> {
-    let normal = visible(d, frame.to_world(local).normalize_any(d), wo);
+    let normal = visible(d, normal, wo);
     let tangent = frame.tangent - normal.scale(frame.tangent.dot(d, normal));
     let tangent = tangent.normalize_any(d);
     let handed = frame.normal.cross(frame.tangent).dot(d, frame.bitangent);

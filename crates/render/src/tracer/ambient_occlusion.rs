@@ -22,7 +22,14 @@ pub struct AmbientOcclusion<D: Domain, S> {
 
 impl<D: Domain, S: Sampler<D>> Tracer<D> for AmbientOcclusion<D, S> {
     #[inline(always)]
-    fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
+    fn on_emit<C: Camera<D>, L: LightKinds<D> + ?Sized>(
+        &self,
+        d: D,
+        camera: &C,
+        _: &L,
+        pixel: [D::U; 2],
+        sample: D::U,
+    ) -> Path<D> {
         self.settings
             .camera_path(d, camera, &self.sampler, pixel, sample)
     }
@@ -61,6 +68,7 @@ impl<D: Domain, S: Sampler<D>> Tracer<D> for AmbientOcclusion<D, S> {
                 tmax: self.settings.reach,
             },
             contribution: path.throughput,
+            pixel: None,
             active: consistent(d, surface, dir, local),
         })
     }

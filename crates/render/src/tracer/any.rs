@@ -1,9 +1,9 @@
 //! A tracer chosen at run time.
 
 use super::{
-    Absorption, AbsorptionAndScattering, AmbientOcclusion, AnyMatter, AnyMis, AnyNesting, Bounce,
-    CostMap, Crossing, Debug, DebugView, Dispersing, InMedia, Passage, Path, PathTracer, Settings,
-    Shadow, Tracer, Vertex,
+    Absorption, AbsorptionAndScattering, AmbientOcclusion, AnyMatter, AnyMis, AnyNesting, AnyPaths,
+    AnySharing, Bidirectional, Bounce, CostMap, Crossing, Debug, DebugView, Dispersing, InMedia,
+    Passage, Path, PathOrigin, PathTracer, Settings, Shadow, Tracer, Vertex,
 };
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -18,6 +18,8 @@ use crate::surface::{Cone, Surface};
 pub enum TracerNode {
     /// [`PathTracer`].
     Path(AnyMis),
+    /// [`struct@Bidirectional`].
+    Bidirectional(AnySharing),
     /// [`AmbientOcclusion`].
     AmbientOcclusion,
     /// [`struct@Debug`].
@@ -64,6 +66,16 @@ impl TracerNode {
     pub fn is_bounded(self) -> bool {
         matches!(self, Self::AmbientOcclusion)
     }
+
+    /// Its paths carry light, so that the scene has to have some.
+    pub fn needs_light(self) -> bool {
+        matches!(self, Self::Path(_) | Self::Bidirectional(_))
+    }
+
+    /// Paths begin at lights, too.
+    pub fn has_light_paths(self) -> bool {
+        matches!(self, Self::Bidirectional(_))
+    }
 }
 
 impl Default for TracerNode {
@@ -73,44 +85,54 @@ impl Default for TracerNode {
 }
 
 impl TracerNode {
-    /// The tracer.
+    /// The tracer. `camera` is what light paths look for.
     #[inline(always)]
-    pub fn tracer<D: Domain, S: Copy>(
+    pub fn tracer<D: Domain, S: Copy, C>(
         self,
         between: Between,
         sampler: S,
         settings: Settings<D>,
-    ) -> AnyTracer<D, S> {
-        match self {
-            Self::Path(mis) => {
-                let tracer = PathTracer {
-                    sampler,
-                    settings,
-                    mis,
-                };
-                let in_media = |media: MediaNode| InMedia {
-                    tracer,
-                    nesting: media.nesting,
-                    matter: media.matter.matter(sampler),
-                };
-                match (between.media, between.dispersion) {
-                    (None, false) => AnyTracer::Path(tracer),
-                    (Some(media), false) => AnyTracer::InMedia(in_media(media)),
-                    (None, true) => AnyTracer::Dispersing(Dispersing { tracer, sampler }),
-                    (Some(media), true) => {
-                        let tracer = in_media(media);
-                        AnyTracer::Both(Dispersing { tracer, sampler })
-                    }
-                }
-            }
-            Self::AmbientOcclusion => {
-                AnyTracer::AmbientOcclusion(AmbientOcclusion { sampler, settings })
-            }
-            Self::Debug(view) => AnyTracer::Debug(Debug {
+        camera: C,
+    ) -> AnyTracer<D, S, C>
+    where
+        C: Copy,
+    {
+        let tracer = match self {
+            Self::Path(mis) => AnyPaths::Path(PathTracer {
                 sampler,
                 settings,
-                view,
+                mis,
             }),
+            Self::Bidirectional(sharing) => AnyPaths::Bidirectional(Bidirectional {
+                sampler,
+                settings,
+                camera,
+                sharing,
+            }),
+            Self::AmbientOcclusion => {
+                return AnyTracer::AmbientOcclusion(AmbientOcclusion { sampler, settings });
+            }
+            Self::Debug(view) => {
+                return AnyTracer::Debug(Debug {
+                    sampler,
+                    settings,
+                    view,
+                });
+            }
+        };
+        let in_media = |media: MediaNode| InMedia {
+            tracer,
+            nesting: media.nesting,
+            matter: media.matter.matter(sampler),
+        };
+        match (between.media, between.dispersion) {
+            (None, false) => AnyTracer::Paths(tracer),
+            (Some(media), false) => AnyTracer::InMedia(in_media(media)),
+            (None, true) => AnyTracer::Dispersing(Dispersing { tracer, sampler }),
+            (Some(media), true) => {
+                let tracer = in_media(media);
+                AnyTracer::Both(Dispersing { tracer, sampler })
+            }
         }
     }
 }
@@ -127,8 +149,8 @@ impl MatterNode {
     }
 }
 
-/// The path tracer among media.
-type PathsInMedia<D, S> = InMedia<PathTracer<D, S, AnyMis>, AnyNesting, AnyMatter<S>>;
+/// Paths among media.
+type PathsInMedia<D, S, C> = InMedia<AnyPaths<D, S, C>, AnyNesting, AnyMatter<S>>;
 
 /// Any of the tracers: the interpreted renderer's.
 #[derive(Clone, Copy)]
@@ -136,11 +158,11 @@ type PathsInMedia<D, S> = InMedia<PathTracer<D, S, AnyMis>, AnyNesting, AnyMatte
     missing_docs,
     reason = "each variant is the type of its name, or both types"
 )]
-pub enum AnyTracer<D: Domain, S> {
-    Path(PathTracer<D, S, AnyMis>),
-    InMedia(PathsInMedia<D, S>),
-    Dispersing(Dispersing<PathTracer<D, S, AnyMis>, S>),
-    Both(Dispersing<PathsInMedia<D, S>, S>),
+pub enum AnyTracer<D: Domain, S, C> {
+    Paths(AnyPaths<D, S, C>),
+    InMedia(PathsInMedia<D, S, C>),
+    Dispersing(Dispersing<AnyPaths<D, S, C>, S>),
+    Both(Dispersing<PathsInMedia<D, S, C>, S>),
     AmbientOcclusion(AmbientOcclusion<D, S>),
     Debug(Debug<D, S>),
 }
@@ -149,7 +171,7 @@ pub enum AnyTracer<D: Domain, S> {
 macro_rules! each {
     ($any:expr, $tracer:ident => $call:expr) => {
         match $any {
-            AnyTracer::Path($tracer) => $call,
+            AnyTracer::Paths($tracer) => $call,
             AnyTracer::InMedia($tracer) => $call,
             AnyTracer::Dispersing($tracer) => $call,
             AnyTracer::Both($tracer) => $call,
@@ -159,10 +181,27 @@ macro_rules! each {
     };
 }
 
-impl<D: Domain, S: Sampler<D>> Tracer<D> for AnyTracer<D, S> {
+impl<D, S, C> Tracer<D> for AnyTracer<D, S, C>
+where
+    D: Domain,
+    S: Sampler<D> + Copy,
+    C: Camera<D> + Copy,
+{
     #[inline(always)]
-    fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
-        each!(self, tracer => tracer.on_emit(d, camera, pixel, sample))
+    fn on_emit<K: Camera<D>, L: LightKinds<D> + ?Sized>(
+        &self,
+        d: D,
+        camera: &K,
+        lights: &L,
+        pixel: [D::U; 2],
+        sample: D::U,
+    ) -> Path<D> {
+        each!(self, tracer => tracer.on_emit(d, camera, lights, pixel, sample))
+    }
+
+    #[inline(always)]
+    fn has_light_paths(&self) -> Option<PathOrigin> {
+        each!(self, tracer => tracer.has_light_paths())
     }
 
     #[inline(always)]

@@ -49,7 +49,14 @@ pub struct Debug<D: Domain, S> {
 
 impl<D: Domain, S: Sampler<D>> Tracer<D> for Debug<D, S> {
     #[inline(always)]
-    fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
+    fn on_emit<C: Camera<D>, L: LightKinds<D> + ?Sized>(
+        &self,
+        d: D,
+        camera: &C,
+        _: &L,
+        pixel: [D::U; 2],
+        sample: D::U,
+    ) -> Path<D> {
         self.settings
             .camera_path(d, camera, &self.sampler, pixel, sample)
     }

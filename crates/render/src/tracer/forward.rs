@@ -7,8 +7,20 @@ macro_rules! forward {
     };
     (@ on_emit) => {
         #[inline(always)]
-        fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
-            self.tracer.on_emit(d, camera, pixel, sample)
+        fn on_emit<C: Camera<D>, L: LightKinds<D> + ?Sized>(
+            &self,
+            d: D,
+            camera: &C,
+            lights: &L,
+            pixel: [D::U; 2],
+            sample: D::U,
+        ) -> Path<D> {
+            self.tracer.on_emit(d, camera, lights, pixel, sample)
+        }
+
+        #[inline(always)]
+        fn has_light_paths(&self) -> Option<$crate::tracer::PathOrigin> {
+            self.tracer.has_light_paths()
         }
     };
     (@ wavelength) => {

@@ -45,6 +45,7 @@ fn place_of<D: Domain>(
         geometric_normal: back,
         frame,
         mesh_frame: frame,
+        untilted: [back; 2],
         ..*surface
     }
 }

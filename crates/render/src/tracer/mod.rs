@@ -9,7 +9,10 @@
 
 mod ambient_occlusion;
 mod any;
+mod any_paths;
+mod bidirectional;
 mod camera_pairs;
+mod camera_paths;
 mod cost_map;
 mod crossing;
 mod debug;
@@ -18,19 +21,24 @@ mod features;
 mod forward;
 mod in_media;
 mod layered;
+mod light_paths;
 mod matter;
 mod medium;
 mod mis;
 mod nesting;
+mod next_event;
 mod passage;
 mod path;
 mod path_state;
+mod rivals;
 mod settings;
 mod step;
 mod vertex_pairs;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use any::{AnyTracer, Between, MatterNode, MediaNode, TracerNode};
+pub use any_paths::AnyPaths;
+pub use bidirectional::{AnySharing, Bidirectional, Combined, LightPathsOnly, Sharing};
 pub use cost_map::CostMap;
 pub use crossing::Crossing;
 pub use debug::{Debug, DebugView};
@@ -45,7 +53,7 @@ pub use nesting::{AnyNesting, Beside, Nested, Nesting};
 pub use passage::{Passage, Scattering};
 pub use path::PathTracer;
 pub use path_state::{MAX_DEPTH, MAX_MEDIA, PathState};
-pub use settings::{Settings, TracerOptions};
+pub use settings::{PathOrigin, Settings, TracerOptions};
 pub use step::{Step, shade};
 
 use crate::bsdf::Bsdf;
@@ -67,6 +75,10 @@ pub struct Path<D: Domain> {
     /// Density, per steradian, with which the BSDF proposed the ray's direction; 0 for camera rays and delta
     /// lobes, which light sampling cannot find.
     pub pdf: D::F,
+    /// What [rival strategies](rivals) are worth that find the same light; 0 in tracers that have none. Of the first ray of a light
+    /// path, [`Emission::found`](crate::light::Emission::found), with [`Emission::spread`](crate::light::Emission::spread) for `pdf`,
+    /// negative if it comes from infinitely far away.
+    pub rivals: D::F,
     /// Its random numbers.
     pub key: SampleKey<D::U>,
     /// What it remembers of its way.
@@ -80,6 +92,8 @@ pub struct Shadow<D: Domain> {
     pub ray: PathRay<D>,
     /// Contribution to the pixel.
     pub contribution: Color<D::F>,
+    /// The pixel, counted row by row from the top, if it is not that of the path.
+    pub pixel: Option<D::U>,
     /// It is worth tracing.
     pub active: D::M,
 }
@@ -99,6 +113,7 @@ impl<D: Domain> Bundle<D> for Shadow<D> {
         Self {
             ray: PathRay::choose(d, mask, a.ray, b.ray),
             contribution: Vec3::choose(d, mask, a.contribution, b.contribution),
+            pixel: a.pixel.zip(b.pixel).map(|(a, b)| d.select_u(mask, a, b)),
             active: d.select_mask(mask, a.active, b.active),
         }
     }
@@ -113,6 +128,7 @@ impl<D: Domain> Bundle<D> for Bounce<D> {
                 ray: PathRay::choose(d, mask, a.path.ray, b.path.ray),
                 throughput: Vec3::choose(d, mask, a.path.throughput, b.path.throughput),
                 pdf: d.select(mask, a.path.pdf, b.path.pdf),
+                rivals: d.select(mask, a.path.rivals, b.path.rivals),
                 key: a.path.key,
                 state: PathState(d.select_u(mask, a.path.state.0, b.path.state.0)),
             },
@@ -164,8 +180,23 @@ impl<D: Domain, B> Vertex<'_, D, B> {
 
 /// What is computed along rays.
 pub trait Tracer<D: Domain> {
-    /// The path that begins with a camera ray: sample `sample` of the pixel at (x, y).
-    fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D>;
+    /// The path that begins sample `sample` of the pixel at (x, y): with a camera ray, or, of tracers that [have light
+    /// paths](Tracer::has_light_paths), with what leaves a light.
+    fn on_emit<C: Camera<D>, L: LightKinds<D> + ?Sized>(
+        &self,
+        d: D,
+        camera: &C,
+        lights: &L,
+        pixel: [D::U; 2],
+        sample: D::U,
+    ) -> Path<D>;
+
+    /// Where the paths of this tracer begin, if a sample of the image is a path from the camera and one from a light for each
+    /// pixel, which adds to any pixel ([`Shadow::pixel`]).
+    #[inline(always)]
+    fn has_light_paths(&self) -> Option<PathOrigin> {
+        None
+    }
 
     /// The wavelength that materials are evaluated for, in nanometres, if the path has one.
     #[inline(always)]

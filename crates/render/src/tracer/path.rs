@@ -1,14 +1,13 @@
 //! The path tracer: unidirectional, with next-event estimation, multiple importance sampling and Russian roulette.
 
-use super::vertex_pairs::{
-    BSDF_DIRECTION, LIGHT, LIGHT_TEXEL_AND_MEDIUM, LOBE_AND_ROULETTE, pair, pair_of_levels,
-};
+use super::next_event::NextEvent;
+use super::vertex_pairs::{BSDF_DIRECTION, LOBE_AND_ROULETTE, pair, pair_of_levels};
 use super::{Bounce, Mis, Path, PowerHeuristic, Settings, Shadow, Tracer, Vertex, consistent};
 use crate::bsdf::Bsdf;
 use crate::camera::{Camera, pixel_cone};
 use crate::domain::Domain;
 use crate::light::{self, LightKinds};
-use crate::math::{Color, Vec3};
+use crate::math::Color;
 use crate::sampler::Sampler;
 use crate::surface::{Cone, PathRay};
 
@@ -30,9 +29,17 @@ pub struct PathTracer<D: Domain, S, M = PowerHeuristic> {
 }
 
 impl<D: Domain, S: Sampler<D>, M: Mis<D>> PathTracer<D, S, M> {
+    /// The weight of a light sample: 1 where a BSDF sample could not have found it.
+    #[inline(always)]
+    pub(super) fn light_weight(&self, d: D, event: &NextEvent<D>) -> D::F {
+        let sample = &event.sample;
+        let weight = self.mis.of_light(d, sample.pdf, event.value.pdf);
+        d.select(sample.delta, d.lit(1.0), weight)
+    }
+
     /// The weight of light found by a BSDF sample: 1 where light sampling could not have found it.
     #[inline(always)]
-    fn bsdf_weight(&self, d: D, bsdf_pdf: D::F, light_pdf: D::F) -> D::F {
+    pub(super) fn bsdf_weight(&self, d: D, bsdf_pdf: D::F, light_pdf: D::F) -> D::F {
         let alone = d.eq(bsdf_pdf, d.lit(0.0));
         let safe = d.select(alone, d.lit(1.0), bsdf_pdf);
         d.select(alone, d.lit(1.0), self.mis.of_bsdf(d, safe, light_pdf))
@@ -41,7 +48,14 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> PathTracer<D, S, M> {
 
 impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
     #[inline(always)]
-    fn on_emit<C: Camera<D>>(&self, d: D, camera: &C, pixel: [D::U; 2], sample: D::U) -> Path<D> {
+    fn on_emit<C: Camera<D>, L: LightKinds<D> + ?Sized>(
+        &self,
+        d: D,
+        camera: &C,
+        _: &L,
+        pixel: [D::U; 2],
+        sample: D::U,
+    ) -> Path<D> {
         self.settings
             .camera_path(d, camera, &self.sampler, pixel, sample)
     }
@@ -100,46 +114,9 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
         vertex: &Vertex<'_, D, B>,
         lights: &L,
     ) -> Option<Shadow<D>> {
-        let Vertex { surface, bsdf, .. } = *vertex;
-        if !bsdf.kind().scatters || lights.is_empty() {
-            return None;
-        }
-        let [x, y] = pair(d, &self.sampler, path, LIGHT);
-        let third = match lights.takes_three() {
-            true => pair(d, &self.sampler, path, LIGHT_TEXEL_AND_MEDIUM)[0],
-            false => d.lit(0.0),
-        };
-        let sample = light::sample(d, lights, surface.point, [x, y, third]);
-
-        let wo = surface.frame.to_local(d, vertex.wo);
-        let wi = surface.frame.to_local(d, sample.wi);
-        let value = bsdf.eval(d, surface, wo, wi);
-        let (zero, one) = (d.lit(0.0), d.lit(1.0));
-        let weight = d.select(
-            sample.delta,
-            one,
-            self.mis.of_light(d, sample.pdf, value.pdf),
-        );
-        let contribution =
-            path.throughput * value.value * sample.radiance.scale(weight / sample.pdf);
-
-        let org = surface.spawn(d, sample.wi);
-        let dir = sample.position - org;
-        let pick = |a: D::F, b: D::F| d.select(sample.infinite, a, b);
-        Some(Shadow {
-            ray: PathRay {
-                org,
-                dir: Vec3 {
-                    x: pick(sample.wi.x, dir.x),
-                    y: pick(sample.wi.y, dir.y),
-                    z: pick(sample.wi.z, dir.z),
-                },
-                tmax: pick(d.lit(f64::from(f32::MAX)), one),
-            },
-            contribution,
-            active: consistent(d, surface, sample.wi, wi)
-                & d.lt(zero, contribution.max_component(d)),
-        })
+        let event = NextEvent::new(d, &self.sampler, path, vertex, lights)?;
+        let weight = self.light_weight(d, &event);
+        Some(event.shadow(d, path, vertex, weight))
     }
 
     #[inline(always)]
@@ -180,6 +157,7 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
                 ray: PathRay::unbounded(d, surface.spawn(d, dir), dir),
                 throughput: throughput.scale(scale),
                 pdf: sample.pdf,
+                rivals: path.rivals,
                 key: path.key,
                 state: path.state.next(d),
             },

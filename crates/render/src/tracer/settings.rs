@@ -7,6 +7,17 @@ use crate::domain::Domain;
 use crate::math::Vec3;
 use crate::sampler::{SampleKey, Sampler};
 
+/// Where paths begin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u32)]
+pub enum PathOrigin {
+    /// At the camera.
+    #[default]
+    Camera,
+    /// At lights. Only of tracers that [have light paths](super::Tracer::has_light_paths).
+    Lights,
+}
+
 /// Options of a tracer, as a device gets them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -21,9 +32,11 @@ pub struct TracerOptions {
     pub roulette_from: u32,
     /// How far occluders count for ambient occlusion, and where the depth view turns black; in units of the scene.
     pub reach: f32,
+    /// Where paths begin.
+    pub origin: PathOrigin,
 }
 
-const _: () = assert!(size_of::<TracerOptions>() == 24);
+const _: () = assert!(size_of::<TracerOptions>() == 28);
 
 /// [`TracerOptions`] in the numbers of a domain.
 #[derive(Clone, Copy)]
@@ -34,6 +47,7 @@ pub struct Settings<D: Domain> {
     pub max_depth: D::U,
     pub roulette_from: D::U,
     pub reach: D::F,
+    pub origin: PathOrigin,
 }
 
 impl<D: Domain> Settings<D> {
@@ -46,6 +60,7 @@ impl<D: Domain> Settings<D> {
             max_depth: d.uint(options.max_depth.min(MAX_DEPTH)),
             roulette_from: d.uint(options.roulette_from),
             reach: d.lit(f64::from(options.reach)),
+            origin: options.origin,
         }
     }
 
@@ -74,6 +89,7 @@ impl<D: Domain> Settings<D> {
             ray: camera.ray(d, [x, y], lens),
             throughput: Vec3::splat(one),
             pdf: d.lit(0.0),
+            rivals: d.lit(0.0),
             key,
             state: PathState::first(d),
         }

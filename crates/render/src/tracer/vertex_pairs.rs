@@ -5,7 +5,7 @@ use super::{MAX_DEPTH, Path, camera_pairs};
 use crate::domain::Domain;
 use crate::sampler::Sampler;
 
-/// The light, and the place on it.
+/// The light, and the place on it; of a light path, the place on the lens.
 pub(super) const LIGHT: u32 = 0;
 /// First: the texel of an environment. Second: how far a ray gets in a medium.
 pub(super) const LIGHT_TEXEL_AND_MEDIUM: u32 = 1;

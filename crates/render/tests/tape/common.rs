@@ -1,11 +1,12 @@
 //! A scene's buffers full of random numbers, and the formulas that are run over them.
 
 use residual_render::alias_table::AliasEntry;
-use residual_render::camera::CameraRecord;
+use residual_render::camera::{CameraRecord, PixelConeRecord};
 use residual_render::domain::tape::{Function, Node, Op, Statement};
 use residual_render::domain::{Buffer, Domain};
 use residual_render::light::{
-    AreaRecord, EnvironmentHeader, LIGHT_WORDS, PunctualRecord, set_environment, set_picks,
+    AreaRecord, EnvironmentHeader, LIGHT_WORDS, PunctualRecord, SceneSphereRecord, set_environment,
+    set_picks,
 };
 use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
@@ -91,6 +92,17 @@ pub(crate) fn scene() -> SceneData {
         forward: vector(),
         focus_distance: 2.5,
     });
+    let cone = PixelConeRecord {
+        parallel: 0.0,
+        spread: 1.0,
+        turn: 0.0,
+    };
+    cone.append_to(data.buffer_mut(Buffer::Camera));
+    let sphere = SceneSphereRecord {
+        centre: [0.1, -0.2, 0.3].into(),
+        radius: 2.5,
+    };
+    sphere.append_to(data.buffer_mut(Buffer::Camera));
     let picks = alias_entries(&mut random, 5, 2);
     set_picks(&mut data, picks.into_iter());
     for index in 0..MEDIA as usize {

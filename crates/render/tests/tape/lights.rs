@@ -67,7 +67,7 @@ impl Formula for Lights {
         out.vector(sample.wi);
         out.vector(sample.position);
         out.vector(sample.radiance);
-        out.real(sample.pdf);
+        out.reals.extend([sample.pdf, sample.spread]);
         out.truths.extend([sample.infinite, sample.delta]);
         if let Some(seen) = background {
             out.vector(seen.radiance);

@@ -10,8 +10,8 @@ use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::surface::{PathRay, SurfaceHit};
 use residual_render::texture::Input;
 use residual_render::tracer::{
-    self, AnyNesting, Between, DebugView, MatterNode, MediaNode, Path, PathState, PathTracer,
-    PowerHeuristic, Settings, Tracer, TracerNode, TracerOptions,
+    self, AnyNesting, AnySharing, Between, DebugView, MatterNode, MediaNode, Path, PathOrigin,
+    PathState, PathTracer, PowerHeuristic, Settings, Tracer, TracerNode, TracerOptions,
 };
 
 use crate::check::check;
@@ -25,6 +25,7 @@ const OPTIONS: TracerOptions = TracerOptions {
     max_depth: 100,
     roulette_from: 5,
     reach: 3.0,
+    origin: PathOrigin::Camera,
 };
 
 struct CameraAndSampler(CameraNode, AnySampler);
@@ -65,9 +66,10 @@ impl Formula for CameraAndSampler {
             ray,
             throughput,
             pdf,
+            rivals: _,
             key,
             state: PathState(state),
-        } = tracer.on_emit(d, &camera, [x, y], index);
+        } = tracer.on_emit(d, &camera, &(), [x, y], index);
         let through = camera.ray(
             d,
             [out.reals[0], out.reals[1]],
@@ -99,16 +101,57 @@ fn cameras_and_samplers() {
     }
 }
 
+/// What leaves lights.
+struct FirstOfLightPath;
+
+impl Formula for FirstOfLightPath {
+    fn name(&self) -> String {
+        "first ray of a light path".to_owned()
+    }
+    fn arguments(&self, random: &mut Random) -> (Vec<f32>, Vec<u32>) {
+        (vec![], [0; 3].map(|_| random.word() % 4096).to_vec())
+    }
+    fn run<D: Domain>(&self, d: D, _: &[D::F], words: &[D::U]) -> Yield<D> {
+        let &[x, y, index] = words else {
+            unreachable!()
+        };
+        let structure = Structure {
+            tracer: TracerNode::Bidirectional(AnySharing::Combined),
+            ..structure(light_kinds())
+        };
+        let scene = Interpreted::<D>::new(&structure, &Buffers::EMPTY);
+        let tracer = scene.tracer(Settings {
+            origin: PathOrigin::Lights,
+            ..Settings::new(d, &OPTIONS)
+        });
+        let path = tracer.on_emit(d, scene.camera(), scene.lights(), [x, y], index);
+        let mut out = Yield::new();
+        out.vector(path.ray.org);
+        out.vector(path.ray.dir);
+        out.vector(path.throughput);
+        out.reals.extend([path.pdf, path.rivals]);
+        out.words
+            .extend([path.key.pixel, path.key.index, path.state.0]);
+        out
+    }
+}
+
 /// The step of a tracer at a hit, with all layers.
-struct AnyStep(TracerNode, Between);
+struct AnyStep(TracerNode, Between, PathOrigin);
+
+impl AnyStep {
+    fn new(tracer: TracerNode, between: Between) -> Self {
+        Self(tracer, between, PathOrigin::Camera)
+    }
+}
 
 impl Formula for AnyStep {
     fn name(&self) -> String {
-        format!("{:?} {:?}", self.0, self.1)
+        format!("{:?} {:?} {:?}", self.0, self.1, self.2)
     }
     fn arguments(&self, random: &mut Random) -> (Vec<f32>, Vec<u32>) {
         let (mut reals, mut words) = hit_arguments(random);
-        reals.extend([0; 4].map(|_| random.between(0.1, 1.0)));
+        reals.extend([0; 5].map(|_| random.between(0.1, 1.0)));
         // Within two bodies, of which that of the higher index is first.
         let media = match self.1.media {
             None => 0,
@@ -150,10 +193,14 @@ impl Formula for AnyStep {
             ray: PathRay::unbounded(d, -dir, dir),
             throughput: vec3(r[5], r[6], r[7]),
             pdf: r[8],
+            rivals: r[9],
             key: SampleKey { pixel, index },
             state: PathState(state),
         };
-        let tracer = scene.tracer(Settings::new(d, &OPTIONS));
+        let tracer = scene.tracer(Settings {
+            origin: self.2,
+            ..Settings::new(d, &OPTIONS)
+        });
         let step = tracer::shade(d, &tracer, &path, &hit, &material, scene.lights());
         let mut out = Yield::new();
         if let Some(seen) = step.seen {
@@ -167,13 +214,14 @@ impl Formula for AnyStep {
             out.vector(shadow.ray.dir);
             out.real(shadow.ray.tmax);
             out.vector(shadow.contribution);
+            out.words.extend(shadow.pixel);
             out.truths.push(shadow.active);
         }
         if let Some(bounce) = step.bounce {
             out.vector(bounce.path.ray.org);
             out.vector(bounce.path.ray.dir);
             out.vector(bounce.path.throughput);
-            out.real(bounce.path.pdf);
+            out.reals.extend([bounce.path.pdf, bounce.path.rivals]);
             out.words.push(bounce.path.state.0);
             out.truths.push(bounce.active);
         }
@@ -187,19 +235,30 @@ impl Formula for AnyStep {
 #[test]
 fn steps_of_all_tracers() {
     let surfaces = Between::default();
-    check(&AnyStep(TracerNode::default(), surfaces));
-    check(&AnyStep(TracerNode::AmbientOcclusion, surfaces));
+    check(&AnyStep::new(TracerNode::default(), surfaces));
+    check(&AnyStep::new(TracerNode::AmbientOcclusion, surfaces));
     for view in DebugView::ALL {
         // A path of this tracer is at its end at once, which the recorder cannot know.
-        check(&AnyStep(TracerNode::Debug(view), surfaces));
+        check(&AnyStep::new(TracerNode::Debug(view), surfaces));
     }
     for nesting in [AnyNesting::Beside, AnyNesting::Nested] {
         for matter in [MatterNode::Absorption, MatterNode::AbsorptionAndScattering] {
             for dispersion in [false, true] {
                 let media = Some(MediaNode { nesting, matter });
                 let between = Between { media, dispersion };
-                check(&AnyStep(TracerNode::default(), between));
+                check(&AnyStep::new(TracerNode::default(), between));
             }
+        }
+    }
+}
+
+#[test]
+fn steps_of_paths_from_both_ends() {
+    check(&FirstOfLightPath);
+    for sharing in [AnySharing::Combined, AnySharing::LightPathsOnly] {
+        for origin in [PathOrigin::Camera, PathOrigin::Lights] {
+            let tracer = TracerNode::Bidirectional(sharing);
+            check(&AnyStep(tracer, Between::default(), origin));
         }
     }
 }

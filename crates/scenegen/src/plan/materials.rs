@@ -10,7 +10,7 @@ use super::geometry::is_smooth;
 use super::images::Images;
 use super::media::Media;
 use super::opacity::Opacity;
-use super::options::{CullingRule, PlanOptions};
+use super::options::PlanOptions;
 use super::planned::MaterialUse;
 use super::planned_materials::{Materials, PlannedMaterial};
 use super::program::Builder;
@@ -70,7 +70,7 @@ pub(super) fn plan_materials(
         let has_interior = interior.is_some();
         let collected = builder.sources.collected();
         let transmits = program.bsdf.transmits();
-        let culled = options.culling == CullingRule::Gltf && !desc.double_sided && !transmits;
+        let culled = options.culls() && !desc.double_sided && !transmits;
         let alpha_tested = program.alpha_test.is_some();
         // Programs are the same if they print the same: floats print exactly, so this neither merges nor splits
         // what must not be.

@@ -38,7 +38,9 @@ mod sources;
 use glam::DVec3;
 use residual_render::domain::Buffer;
 use residual_render::layer::Layer;
+use residual_render::light::SceneSphereRecord;
 use residual_render::program::{Program, Structure};
+use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::tracer::{Between, TracerNode};
 
@@ -66,17 +68,17 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let hidden = coincident::hide(&mut data);
     // Only paths need lights.
     let lights = match options.tracer {
-        TracerNode::Path(_) => lights::plan_lights(
+        TracerNode::Path(_) | TracerNode::Bidirectional(_) => lights::plan_lights(
             scene,
             &materials,
             &geometry,
             &mut images,
-            options.light_picks,
+            options.light_picks_of_tracer(),
             &mut data,
         ),
         TracerNode::AmbientOcclusion | TracerNode::Debug(_) => lights::PlannedLights::default(),
     };
-    let needs_light = matches!(options.tracer, TracerNode::Path(_));
+    let needs_light = options.tracer.needs_light();
     // A black environment is darkness that was asked for.
     if needs_light && lights.kinds.is_empty() && scene.environment.is_none() {
         let mut plan = plan(&scene.with_white_sky(), options)?;
@@ -90,8 +92,17 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     }
     let (camera, chosen) =
         camera::choose(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
-    if materials.programs.iter().any(Program::filters) {
+    let has_light_paths = options.tracer.has_light_paths();
+    if has_light_paths || materials.programs.iter().any(Program::filters) {
         camera::set_pixel_cone(&camera, &mut data);
+    }
+    if has_light_paths {
+        let (centre, radius) = geometry.bounds.sphere();
+        let record = SceneSphereRecord {
+            centre: centre.to_array().into(),
+            radius,
+        };
+        record.append_to(data.buffer_mut(Buffer::Camera));
     }
     let mut dismissed = [&scene.dismissed[..], &materials.dismissed].concat();
     if hidden > 0 {
@@ -112,7 +123,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     images.pack(scene, &mut data)?;
     *data.buffer_mut(Buffer::Params) = materials.params;
     let between = match options.tracer {
-        TracerNode::Path(_) => Between {
+        TracerNode::Path(_) | TracerNode::Bidirectional(_) => Between {
             media: materials.media,
             dispersion: materials.programs.iter().any(Program::disperses),
         },

@@ -111,3 +111,21 @@ impl Default for PlanOptions {
         }
     }
 }
+
+impl PlanOptions {
+    /// Whether single-sided surfaces are seen from their front only. Light paths would have to be stopped by other surfaces than
+    /// paths from the camera: what a ray passes from behind, its reverse does not.
+    pub(super) fn culls(&self) -> bool {
+        self.culling == CullingRule::Gltf && !self.tracer.has_light_paths()
+    }
+
+    /// How often each light is picked by the tracer. Paths that begin at lights know no point to pick them for.
+    pub(super) fn light_picks_of_tracer(&self) -> LightPicks {
+        match self.light_picks {
+            LightPicks::Auto | LightPicks::Tree if self.tracer.has_light_paths() => {
+                LightPicks::Mixed
+            }
+            picks => picks,
+        }
+    }
+}

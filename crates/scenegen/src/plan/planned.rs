@@ -82,7 +82,7 @@ impl Plan {
     pub fn default_reach(&self) -> f32 {
         match self.structure.tracer {
             TracerNode::AmbientOcclusion => 0.1 * self.diagonal,
-            TracerNode::Path(_) | TracerNode::Debug(_) => self.depth,
+            TracerNode::Path(_) | TracerNode::Bidirectional(_) | TracerNode::Debug(_) => self.depth,
         }
     }
 }

@@ -54,7 +54,7 @@ impl<'a> Sources<'a> {
             scene,
             binding: options.binding,
             textures: match options.tracer {
-                TracerNode::Path(_) => options.textures,
+                TracerNode::Path(_) | TracerNode::Bidirectional(_) => options.textures,
                 TracerNode::AmbientOcclusion | TracerNode::Debug(_) => TextureResolution::Full,
             },
             available,

@@ -41,7 +41,7 @@ pub(super) fn scene(out: &mut Module, plan: &Plan, images: &Images<'_>) -> fmt::
         "    pub const STRUCTURE: u64 = {:#018x};",
         fingerprint(&plan.structure)
     )?;
-    tracer::layers(out, plan.structure.layers)?;
+    tracer::constants(out, &plan.structure)?;
     writeln!(out, "}}")?;
     for (name, kind, value) in images.constants() {
         let start = format!("const {name}: {} = ", out.lines(&kind, 0, 0, 0));

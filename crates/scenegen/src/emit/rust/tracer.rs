@@ -4,13 +4,14 @@ use std::fmt::{self, Write as _};
 
 use residual_render::layer::Layers;
 use residual_render::program::Structure;
-use residual_render::tracer::{AnyMis, MatterNode, MediaNode, TracerNode};
+use residual_render::tracer::{AnyMis, AnySharing, MatterNode, MediaNode, TracerNode};
 
 use super::layout::{Code, Name};
 use super::module::Module;
 
-/// The constant with the layers.
-pub(super) fn layers(out: &mut Module, layers: Layers) -> fmt::Result {
+/// The constants with what the device has to know: the layers, and whether there are light paths.
+pub(super) fn constants(out: &mut Module, structure: &Structure) -> fmt::Result {
+    let layers = structure.layers;
     out.import("layer", &["Layers"]);
     let names: Vec<_> = layers.iter().map(|layer| layer.name()).collect();
     let names = match names.is_empty() {
@@ -22,7 +23,14 @@ pub(super) fn layers(out: &mut Module, layers: Layers) -> fmt::Result {
         out,
         "    pub const LAYERS: Layers = Layers::from_bits({:#b});",
         layers.bits()
-    )
+    )?;
+    if structure.tracer.has_light_paths() {
+        writeln!(
+            out,
+            "\n    /// Paths begin at lights, too.\n    pub const HAS_LIGHT_PATHS: bool = true;"
+        )?;
+    }
+    Ok(())
 }
 
 fn sampler(structure: &Structure) -> Code {
@@ -31,6 +39,14 @@ fn sampler(structure: &Structure) -> Code {
 
 fn weights(mis: AnyMis) -> Code {
     Code::Word(Name::of("tracer", format!("{mis:?}")))
+}
+
+fn sharing(sharing: AnySharing) -> Code {
+    Code::Word(Name::of("tracer", format!("{sharing:?}")))
+}
+
+fn camera(structure: &Structure) -> Code {
+    Code::Word(Name::of("camera", format!("{:?}", structure.camera)))
 }
 
 fn nesting(media: MediaNode) -> Code {
@@ -60,8 +76,10 @@ fn matter(structure: &Structure, media: MediaNode) -> Code {
 /// The associated type of the tracer.
 pub(super) fn associated_type(out: &mut Module, structure: &Structure) -> fmt::Result {
     let mut parameters = vec![Code::word("D"), sampler(structure)];
-    if let TracerNode::Path(mis) = structure.tracer {
-        parameters.push(weights(mis));
+    match structure.tracer {
+        TracerNode::Path(mis) => parameters.push(weights(mis)),
+        TracerNode::Bidirectional(kind) => parameters.extend([camera(structure), sharing(kind)]),
+        TracerNode::AmbientOcclusion | TracerNode::Debug(_) => {}
     }
     let mut tracer = Code::generic(name(structure.tracer), parameters);
     if let Some(media) = structure.between.media {
@@ -93,6 +111,9 @@ pub(super) fn method(out: &mut Module, structure: &Structure) -> fmt::Result {
     ];
     match structure.tracer {
         TracerNode::Path(mis) => fields.push(("mis", weights(mis))),
+        TracerNode::Bidirectional(kind) => {
+            fields.extend([("camera", camera(structure)), ("sharing", sharing(kind))]);
+        }
         TracerNode::AmbientOcclusion => {}
         TracerNode::Debug(view) => {
             let view = Name::of("tracer", format!("DebugView::{view:?}"));
@@ -130,6 +151,7 @@ pub(super) fn method(out: &mut Module, structure: &Structure) -> fmt::Result {
 fn name(tracer: TracerNode) -> Name {
     let name = match tracer {
         TracerNode::Path(_) => "PathTracer",
+        TracerNode::Bidirectional(_) => "Bidirectional",
         TracerNode::AmbientOcclusion => "AmbientOcclusion",
         TracerNode::Debug(_) => "Debug",
     };

@@ -1,10 +1,10 @@
-//! Where a job's paths begin: tile after tile, the samples of its pixels, one after the other, in blocks of 4×4 pixels, whose rays
-//! stay together.
+//! Where a job's paths begin: tile after tile, the samples of its pixels, one after the other, in blocks of 4×4 pixels, whose camera
+//! rays stay together.
 
 use residual_render::domain::{Lanes, MAX_LANES};
 use residual_render::film::TileSamples;
 use residual_render::renderer::Renderer;
-use residual_render::tracer::Tracer;
+use residual_render::tracer::{PathOrigin, Tracer};
 
 use crate::job::TileJob;
 use crate::stream::PathStream;
@@ -12,8 +12,8 @@ use crate::stream::PathStream;
 /// Pixels along the side of a block.
 const SIDE: usize = 4;
 
-/// The camera rays of a job that are yet to be made.
-pub(crate) struct CameraRays<'j> {
+/// The first rays of a job's paths that are yet to be made.
+pub(crate) struct FirstRays<'j> {
     job: &'j TileJob<'j>,
     /// The tile whose turn it is, and the index of its first sample among those of the job.
     tile: usize,
@@ -22,7 +22,7 @@ pub(crate) struct CameraRays<'j> {
     next: usize,
 }
 
-impl<'j> CameraRays<'j> {
+impl<'j> FirstRays<'j> {
     pub(crate) fn new(job: &'j TileJob<'j>) -> Self {
         Self {
             job,
@@ -63,6 +63,8 @@ impl<'j> CameraRays<'j> {
         let blocks = (width.div_ceil(SIDE), height.div_ceil(SIDE));
         let places = blocks.0 * blocks.1 * SIDE * SIDE;
         let end = places * pass.count as usize;
+        let [image_width, image_height] = job.tracer.image;
+        let image = image_width * image_height;
         let mut columns = [0; MAX_LANES];
         let mut rows = [0; MAX_LANES];
         let mut samples = [0; MAX_LANES];
@@ -84,8 +86,13 @@ impl<'j> CameraRays<'j> {
             }
             let pixel = [&columns, &rows].map(|places| d.word(&places[..D::LANES]));
             let of_pixel = d.uint(pass.first + sample as u32);
-            let path = tracer.on_emit(d, scene.camera(), pixel, of_pixel);
-            paths.push(d, inside, &path, d.word(&samples[..D::LANES]));
+            let path = tracer.on_emit(d, scene.camera(), scene.lights(), pixel, of_pixel);
+            let samples = match job.tracer.origin {
+                PathOrigin::Camera => d.word(&samples[..D::LANES]),
+                // To this the pixel is added that a vertex is seen in.
+                PathOrigin::Lights => d.uint(sample as u32 * image),
+            };
+            paths.push(d, inside, &path, samples);
             self.next += D::LANES;
         }
         if self.next >= end {
