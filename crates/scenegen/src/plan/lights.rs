@@ -2,21 +2,24 @@
 
 use std::collections::HashSet;
 
+use glam::DVec3;
 use residual_render::alias_table::alias_entries;
-use residual_render::domain::Buffer;
+use residual_render::domain::{Buffer, Scalar, Uint};
 use residual_render::light::{
-    self, AreaRecord, EnvironmentHeader, LightRecord, LightTree, PunctualRecord, push_light,
+    self, AreaBySolidAngleRecord, AreaRecord, LIGHT_WORDS, EnvironmentHeader, LightRecord, LightTree, PunctualRecord, push_light,
     set_picks,
 };
 use residual_render::program::{ColorNode, LightNode, Program, Source, SourceNode};
+use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
 
 use super::geometry::Geometry;
 use super::images::Images;
+use super::light_places_gain::{self, Emitter};
 use super::light_tree::{self, LightBounds, Reach};
 use super::light_tree_gain;
-use super::options::LightPicks;
+use super::options::{LightPicks, LightPlaces, PlanOptions};
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
 use super::punctual::Punctual;
@@ -36,6 +39,10 @@ pub(super) struct PlannedLights {
     powers: Vec<(f64, usize)>,
     /// Where each shines.
     reaches: Vec<Reach>,
+    /// How often each is picked from a table.
+    probabilities: Vec<f64>,
+    /// Those that are triangles.
+    emitters: Vec<Emitter>,
 }
 
 /// Of fewer lights at finite places there is no tree, unless it is asked for.
@@ -44,6 +51,11 @@ const FEW_LIGHTS: usize = 8;
 const MANY_LIGHTS: usize = 1024;
 /// Among numbers between the two there is one where samples have so much less [variance](light_tree_gain::gain).
 const LEAST_GAIN: f64 = 1.5;
+
+/// With more emitting triangles than these, each is small beside its distance, and they are not tried by solid angle.
+const MANY_EMITTERS: usize = 512;
+/// Triangles are sampled by solid angle where direct light has so much less [variance](light_places_gain::gain).
+const LEAST_PLACES_GAIN: f64 = 1.5;
 
 /// Builds the tree over lights with the probabilities that a table gives them, if it pays or is asked for.
 fn tree(lights: &[(Reach, f64)], picks: LightPicks, data: &mut SceneData) -> Option<LightTree> {
@@ -70,7 +82,7 @@ pub(super) fn plan_lights(
     materials: &Materials,
     geometry: &Geometry,
     images: &mut Images,
-    picks: LightPicks,
+    options: &PlanOptions,
     data: &mut SceneData,
 ) -> PlannedLights {
     let mut lights = PlannedLights::default();
@@ -82,7 +94,8 @@ pub(super) fn plan_lights(
     if let Some(environment) = &scene.environment {
         lights.add_environment(scene, environment, images, radius, data);
     }
-    lights.set_picks(picks, data);
+    lights.set_picks(options.light_picks, data);
+    lights.set_places(options.light_places, data);
     lights
 }
 
@@ -196,7 +209,7 @@ impl PlannedLights {
             let mut kind = None;
             for prim in object.triangles.clone() {
                 let corners = [0, 1, 2].map(|corner| {
-                    glam::DVec3::from_array(positions[3 * prim as usize + corner].map(f64::from))
+                    DVec3::from_array(positions[3 * prim as usize + corner].map(f64::from))
                 });
                 let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
                 let area = normal.length() * 0.5;
@@ -210,12 +223,18 @@ impl PlannedLights {
                         double_sided: u32::from(emission.double_sided),
                     };
                     push_light(data, record);
+                    self.emitters.push(Emitter {
+                        light: self.powers.len(),
+                        corners,
+                        radiance,
+                        double_sided: emission.double_sided,
+                    });
                     let reach = Reach::Bounded(LightBounds {
                         corners: [
                             corners[0].min(corners[1]).min(corners[2]),
                             corners[0].max(corners[1]).max(corners[2]),
                         ],
-                        axis: normal.normalize_or(glam::DVec3::Z),
+                        axis: normal.normalize_or(DVec3::Z),
                         half_angle: match emission.double_sided {
                             true => std::f64::consts::PI,
                             false => 0.0,
@@ -308,6 +327,7 @@ impl PlannedLights {
             LightPicks::Uniform => 1.0 / self.powers.len() as f64,
         };
         let probabilities: Vec<f64> = self.powers.iter().map(probability).collect();
+        self.probabilities.clone_from(&probabilities);
         self.picks = picks;
         if let LightPicks::Auto | LightPicks::Tree = picks {
             let reaches = self.reaches.iter().copied();
@@ -322,6 +342,61 @@ impl PlannedLights {
             return;
         }
         set_picks(data, alias_entries(&probabilities, 1.0));
+    }
+
+    /// Has triangles sampled by solid angle, if it pays or is asked for.
+    fn set_places(&mut self, places: LightPlaces, data: &mut SceneData) {
+        let by_solid_angle = match places {
+            LightPlaces::Area => false,
+            LightPlaces::SolidAngle => true,
+            LightPlaces::Auto => {
+                (1..=MANY_EMITTERS).contains(&self.emitters.len())
+                    && self.places_gain(data) >= LEAST_PLACES_GAIN
+            }
+        };
+        if !by_solid_angle {
+            return;
+        }
+        for kind in &mut self.kinds {
+            if let LightNode::Area {
+                emission,
+                attributes,
+            } = kind
+            {
+                *kind = LightNode::AreaBySolidAngle {
+                    emission: emission.clone(),
+                    attributes: *attributes,
+                };
+            }
+        }
+        let words = data.buffer_mut(Buffer::Lights);
+        for emitter in &self.emitters {
+            let first = emitter.light * LIGHT_WORDS as usize;
+            let AreaRecord {
+                kind,
+                triangle,
+                double_sided,
+            } = AreaRecord::from_words(&words[first..]);
+            let record = AreaBySolidAngleRecord {
+                kind,
+                triangle,
+                double_sided,
+                normal: emitter.across().as_vec3().to_array().into(),
+            };
+            record.write_to(&mut words[first..]);
+        }
+    }
+
+    fn places_gain(&self, data: &SceneData) -> f64 {
+        let buffers = data.buffers();
+        let d = Scalar::new(&buffers);
+        let pick = |at: DVec3, light: usize| match self.tree {
+            Some(tree) => {
+                tree.probability(d, at.as_vec3().to_array().into(), Uint(light as u32)).into()
+            }
+            None => self.probabilities[light],
+        };
+        light_places_gain::gain(&self.emitters, pick, data)
     }
 }
 
