@@ -11,7 +11,8 @@ use residual_scenegen::desc::{
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::plan::{
-    Aperture, Binding, Focus, LightPicks, LightPlaces, Optics, Plan, PlanOptions, TextureResolution, plan,
+    Aperture, Binding, Focus, LightPicks, LightPlaces, Optics, Plan, PlanOptions,
+    TextureResolution, plan,
 };
 
 use crate::fixtures::{

@@ -5,11 +5,11 @@ use residual_render::domain::Buffer;
 use residual_render::film::Film;
 use residual_render::layer::{Layer, Layers};
 use residual_render::passes::RenderOptions;
+use residual_render::program::LightNode;
 use residual_render::tracer::{AnyMis, TracerNode};
 use residual_scenegen::desc::{
     AlphaMode, Filter, MaterialDesc, Projection, PunctualKind, ScalarInput, SceneDesc, Wrap,
 };
-use residual_render::program::LightNode;
 use residual_scenegen::plan::{LightPicks, LightPlaces, PlanOptions, plan};
 use residual_tests::Prepared;
 use residual_tests::fixtures::{self, Builder, color, material, matte, scalar, sheet};
@@ -190,7 +190,11 @@ fn beside_panels(distance: f32) -> SceneDesc {
         ..material("panel", matte([0.5; 3]))
     };
     let low = sheet([-1.0, distance, 1.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.0]);
-    let high = sheet([-1.0, 1.0, distance - 2.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);
+    let high = sheet(
+        [-1.0, 1.0, distance - 2.0],
+        [2.0, 0.0, 0.0],
+        [0.0, 2.0, 0.0],
+    );
     b.add(panel, [low, high]);
     let lens = Projection::Perspective { yfov: 0.9 };
     b.camera("camera", [0.5, 2.5, 5.5], [0.0, 1.0, 0.0], lens);
@@ -216,7 +220,11 @@ fn places_by_area_and_by_solid_angle_give_one_image() {
                 ..PlanOptions::default()
             };
             let other = render_with(&scene, mis, options, seed);
-            agree(&by_area, &other, &format!("{name}, {mis:?}, by solid angle"));
+            agree(
+                &by_area,
+                &other,
+                &format!("{name}, {mis:?}, by solid angle"),
+            );
         }
     }
 }
@@ -230,14 +238,19 @@ fn triangles_are_sampled_by_solid_angle_where_it_pays() {
         };
         let plan = plan(scene, &options).unwrap();
         let lights = plan.structure.lights.iter();
-        lights.filter(|light| matches!(light, LightNode::AreaBySolidAngle { .. })).count()
+        lights
+            .filter(|light| matches!(light, LightNode::AreaBySolidAngle { .. }))
+            .count()
     };
     let near = beside_panels(0.05);
     assert_eq!(by_solid_angle(&near, LightPlaces::Auto), 1);
     assert_eq!(by_solid_angle(&near, LightPlaces::Area), 0);
     let mut far = near;
     // Behind the meshes of floor and wall are those of the panels.
-    for position in far.meshes[2..].iter_mut().flat_map(|mesh| &mut mesh.positions) {
+    for position in far.meshes[2..]
+        .iter_mut()
+        .flat_map(|mesh| &mut mesh.positions)
+    {
         position.y += 40.0;
     }
     assert_eq!(by_solid_angle(&far, LightPlaces::Auto), 0);

@@ -11,8 +11,8 @@ use residual_render::layer::{Layer, Layers};
 use residual_scenegen::plan::{Aperture, Focus, Optics};
 
 use crate::choices::{
-    CullingArg, DeviceArg, LightPlacesArg, LightsArg, MappingArg, MisArg, SamplerArg, SpecializeArg, StudioArg,
-    TargetArg, TexturesArg, TierArg, TracerArg, ViewArg,
+    CullingArg, DeviceArg, LightPlacesArg, LightsArg, MappingArg, MisArg, SamplerArg,
+    SpecializeArg, StudioArg, TargetArg, TexturesArg, TierArg, TracerArg, ViewArg,
 };
 use crate::compare::args::CompareArgs;
 

@@ -13,13 +13,14 @@ use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{
-    Binding, BodyRule, CameraChoice, CullingRule, LightPicks, LightPlaces, Plan, PlanOptions, TextureResolution,
-    View, plan,
+    Binding, BodyRule, CameraChoice, CullingRule, LightPicks, LightPlaces, Plan, PlanOptions,
+    TextureResolution, View, plan,
 };
 
 use crate::args::SceneArgs;
 use crate::choices::{
-    CullingArg, LightPlacesArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TexturesArg, TracerArg,
+    CullingArg, LightPlacesArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TexturesArg,
+    TracerArg,
 };
 
 /// What statistics say about a planned scene.

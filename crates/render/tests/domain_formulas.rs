@@ -6,8 +6,8 @@ use residual_render::bsdf::{
 };
 use residual_render::domain::{Buffer, Domain, Lanes};
 use residual_render::light::{
-    self, Area, AreaBySolidAngle, AreaBySolidAngleRecord, AreaRecord, Directional, Environment, LightKind, LightSample, Point,
-    PunctualRecord, SphericalPoint, SphericalSpot, Spot, Sun,
+    self, Area, AreaBySolidAngle, AreaBySolidAngleRecord, AreaRecord, Directional, Environment,
+    LightKind, LightSample, Point, PunctualRecord, SphericalPoint, SphericalSpot, Spot, Sun,
 };
 use residual_render::math::vec3::vec3;
 use residual_render::record::BufferRecord;

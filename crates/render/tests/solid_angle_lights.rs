@@ -67,7 +67,10 @@ impl Case {
     fn bounds(&self) -> [f64; 2] {
         let corners = self.corners();
         let height = dot(corners[0], unit(across(&self.lamp))).abs();
-        let nearest = corners.map(length).into_iter().fold(f64::INFINITY, f64::min);
+        let nearest = corners
+            .map(length)
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
         let farthest = corners.map(length).into_iter().fold(0.0, f64::max);
         let seen = corners.map(unit);
         let opposite = [[0, 1], [1, 2], [2, 0]].map(|[a, b]| 2.0 + 2.0 * dot(seen[a], seen[b]));
@@ -112,15 +115,20 @@ fn cases(count: usize, seed: u64) -> Vec<Case> {
         add("any", here, 1.0, lamp, from);
         // A place in front of the triangle, a part of its size away from it.
         let normal = unit(cross(minus(lamp[1], lamp[0]), minus(lamp[2], lamp[0])));
-        let before = |place: [f64; 3], distance: f64| {
-            [0, 1, 2].map(|k| place[k] + normal[k] * distance)
-        };
+        let before =
+            |place: [f64; 3], distance: f64| [0, 1, 2].map(|k| place[k] + normal[k] * distance);
         let mix = |weights: [f64; 3]| {
             [0, 1, 2].map(|k| (0..3).map(|i| lamp[i][k] * weights[i]).sum::<f64>())
         };
         let near = power(&mut rng, -3.0, 0.0);
         let scale = power(&mut rng, -3.0, 3.0);
-        add("near", here, scale, lamp, before(mix([0.2, 0.3, 0.5]), near));
+        add(
+            "near",
+            here,
+            scale,
+            lamp,
+            before(mix([0.2, 0.3, 0.5]), near),
+        );
         let t = rng.range(0.0, 1.0);
         let on_edge = mix([1.0 - t, t, 0.0]);
         add("near an edge", here, scale, lamp, before(on_edge, near));
@@ -141,7 +149,13 @@ fn cases(count: usize, seed: u64) -> Vec<Case> {
         let aside = around(&mut rng, distance);
         let from = [0, 1, 2].map(|k| end[k] * share + aside[k]);
         add("needle", here, 1.0, [here, end, tip(1.0)], from);
-        add("sliver", here, 1.0, [here, end, tip(rng.range(0.0, 1.0))], from);
+        add(
+            "sliver",
+            here,
+            1.0,
+            [here, end, tip(rng.range(0.0, 1.0))],
+            from,
+        );
         let origin = around(&mut rng, 100.0);
         add("off the origin", origin, 1.0, lamp, around(&mut rng, 2.0));
     }
@@ -198,7 +212,7 @@ fn places_are_uniform_by_solid_angle() {
         let [angle, place] = case.bounds();
         let single = [0, 1, 2].map(|k| single[k] / if k == 0 { angle } else { place });
         for (worst, error) in worst.iter_mut().zip([single, double].concat()) {
-            worst.add(error, || format!("{case:?}"));
+            worst.add(error, || format!("{}: {case:?}", case.name));
         }
         in_bound += usize::from(place < 1e-3);
     }
@@ -238,7 +252,9 @@ fn triangles_shine_as_lambert_says() {
         let exact = lambert(corners);
         // Which way it points depends on the order of the corners.
         let towards = unit(exact);
-        let sign = dot(towards, unit(corners[0])) + dot(towards, unit(corners[1])) + dot(towards, unit(corners[2]));
+        let sign = dot(towards, unit(corners[0]))
+            + dot(towards, unit(corners[1]))
+            + dot(towards, unit(corners[2]));
         let towards = towards.map(|x| x * sign.signum());
         let mut mean = Mean::default();
         for _ in 0..4000 {
@@ -246,7 +262,10 @@ fn triangles_shine_as_lambert_says() {
             let cos = dot(array(sample.wi).map(f64::from), towards);
             mean.add(f64::from(sample.radiance.x) * cos / f64::from(sample.pdf));
         }
-        family.add_z(mean.z(length(exact), case.bounds()[1].max(1e-4)), format!("{case:?}"));
+        family.add_z(
+            mean.z(length(exact), case.bounds()[1].max(1e-4)),
+            format!("{case:?}"),
+        );
     }
     family.assert_plausible();
 }
@@ -284,7 +303,11 @@ fn directions_are_uniform() {
             for j in 0..SIDE {
                 let [a, b, c, e] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
                 let first = Case::solid_angle([a, b, c]);
-                let second = if i == 0 { 0.0 } else { Case::solid_angle([a, c, e]) };
+                let second = if i == 0 {
+                    0.0
+                } else {
+                    Case::solid_angle([a, c, e])
+                };
                 expected[SIDE * i + j] = (first + second) / whole * f64::from(samples);
             }
         }
@@ -307,7 +330,11 @@ fn density_is_the_same_from_both_sides() {
         let away = array(sample.wi).map(f64::from);
         let seen = surface_at(d, 1, [0.3, 0.3], away);
         let ray = PathRay::unbounded(d, case.from.into(), sample.wi);
-        assert_eq!(sample.pdf, light::density(d, &(LAMP, ()), &ray, &seen), "{case:?}");
+        assert_eq!(
+            sample.pdf,
+            light::density(d, &(LAMP, ()), &ray, &seen),
+            "{case:?}"
+        );
         let exact = 1.0 / Case::solid_angle(case.corners());
         let error = (f64::from(sample.pdf) / exact - 1.0).abs();
         assert!(error < case.bounds()[0], "{case:?}: {error}");

@@ -8,7 +8,9 @@ use crate::desc::{
 };
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
-use crate::plan::{BodyRule, CullingRule, LightPicks, LightPlaces, Optics, PlanOptions, TextureResolution};
+use crate::plan::{
+    BodyRule, CullingRule, LightPicks, LightPlaces, Optics, PlanOptions, TextureResolution,
+};
 use crate::sixteen_bits;
 
 /// How an effect is taken out of a scene, in words; `None` for those without which there is no picture, or which

@@ -154,8 +154,15 @@ fn points_on_surfaces(data: &SceneData) -> impl Iterator<Item = (DVec3, DVec3)> 
     let triangles = equal_areas::triangles(data, POINTS).into_iter();
     triangles.enumerate().map(move |(k, [a, b, c])| {
         let [x, y] = steps.map(|step: f64| (0.5 + step * k as f64).fract());
-        let (x, y) = if x + y < 1.0 { (x, y) } else { (1.0 - x, 1.0 - y) };
+        let (x, y) = if x + y < 1.0 {
+            (x, y)
+        } else {
+            (1.0 - x, 1.0 - y)
+        };
         let (right, up) = (b - a, c - a);
-        (a + right * x + up * y, right.cross(up).normalize_or(DVec3::Z))
+        (
+            a + right * x + up * y,
+            right.cross(up).normalize_or(DVec3::Z),
+        )
     })
 }

@@ -6,17 +6,17 @@ use glam::DVec3;
 use residual_render::alias_table::alias_entries;
 use residual_render::domain::{Buffer, Scalar, Uint};
 use residual_render::light::{
-    self, AreaBySolidAngleRecord, AreaRecord, LIGHT_WORDS, EnvironmentHeader, LightRecord, LightTree, PunctualRecord, push_light,
+    self, AreaRecord, EnvironmentHeader, LightRecord, LightTree, PunctualRecord, push_light,
     set_picks,
 };
 use residual_render::program::{ColorNode, LightNode, Program, Source, SourceNode};
-use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
 
 use super::geometry::Geometry;
 use super::images::Images;
-use super::light_places_gain::{self, Emitter};
+use super::light_places;
+use super::light_places_gain::Emitter;
 use super::light_tree::{self, LightBounds, Reach};
 use super::light_tree_gain;
 use super::options::{LightPicks, LightPlaces, PlanOptions};
@@ -51,11 +51,6 @@ const FEW_LIGHTS: usize = 8;
 const MANY_LIGHTS: usize = 1024;
 /// Among numbers between the two there is one where samples have so much less [variance](light_tree_gain::gain).
 const LEAST_GAIN: f64 = 1.5;
-
-/// With more emitting triangles than these, each is small beside its distance, and they are not tried by solid angle.
-const MANY_EMITTERS: usize = 512;
-/// Triangles are sampled by solid angle where direct light has so much less [variance](light_places_gain::gain).
-const LEAST_PLACES_GAIN: f64 = 1.5;
 
 /// Builds the tree over lights with the probabilities that a table gives them, if it pays or is asked for.
 fn tree(lights: &[(Reach, f64)], picks: LightPicks, data: &mut SceneData) -> Option<LightTree> {
@@ -344,59 +339,20 @@ impl PlannedLights {
         set_picks(data, alias_entries(&probabilities, 1.0));
     }
 
-    /// Has triangles sampled by solid angle, if it pays or is asked for.
+    /// Where samples lie on triangles.
     fn set_places(&mut self, places: LightPlaces, data: &mut SceneData) {
-        let by_solid_angle = match places {
-            LightPlaces::Area => false,
-            LightPlaces::SolidAngle => true,
-            LightPlaces::Auto => {
-                (1..=MANY_EMITTERS).contains(&self.emitters.len())
-                    && self.places_gain(data) >= LEAST_PLACES_GAIN
-            }
-        };
-        if !by_solid_angle {
-            return;
-        }
-        for kind in &mut self.kinds {
-            if let LightNode::Area {
-                emission,
-                attributes,
-            } = kind
-            {
-                *kind = LightNode::AreaBySolidAngle {
-                    emission: emission.clone(),
-                    attributes: *attributes,
-                };
-            }
-        }
-        let words = data.buffer_mut(Buffer::Lights);
-        for emitter in &self.emitters {
-            let first = emitter.light * LIGHT_WORDS as usize;
-            let AreaRecord {
-                kind,
-                triangle,
-                double_sided,
-            } = AreaRecord::from_words(&words[first..]);
-            let record = AreaBySolidAngleRecord {
-                kind,
-                triangle,
-                double_sided,
-                normal: emitter.across().as_vec3().to_array().into(),
-            };
-            record.write_to(&mut words[first..]);
-        }
-    }
-
-    fn places_gain(&self, data: &SceneData) -> f64 {
         let buffers = data.buffers();
         let d = Scalar::new(&buffers);
         let pick = |at: DVec3, light: usize| match self.tree {
             Some(tree) => {
-                tree.probability(d, at.as_vec3().to_array().into(), Uint(light as u32)).into()
+                let at = at.as_vec3().to_array().into();
+                tree.probability(d, at, Uint(light as u32)).into()
             }
             None => self.probabilities[light],
         };
-        light_places_gain::gain(&self.emitters, pick, data)
+        if light_places::by_solid_angle(places, &self.emitters, pick, data) {
+            light_places::set_by_solid_angle(&self.emitters, &mut self.kinds, data);
+        }
     }
 }
 

@@ -18,6 +18,7 @@ mod geometry;
 mod image_levels;
 mod image_reading;
 mod images;
+mod light_places;
 mod light_places_gain;
 mod light_tree;
 mod light_tree_gain;
@@ -49,7 +50,9 @@ use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
 pub use optics::{Aperture, Focus, Optics};
-pub use options::{Binding, BodyRule, CullingRule, LightPicks, LightPlaces, PlanOptions, TextureResolution};
+pub use options::{
+    Binding, BodyRule, CullingRule, LightPicks, LightPlaces, PlanOptions, TextureResolution,
+};
 pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
 
 use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
