@@ -218,9 +218,10 @@ fn places_are_uniform_by_solid_angle() {
     }
     assert!(in_bound * 10 > 18_000 * 9, "{in_bound}");
     for (k, worst) in worst.iter().enumerate() {
+        // A sine is a polynomial of 1e-7 there, too, and near zero where half the solid angle is near π.
         let (bound, precision) = match k < 3 {
             true => (1.0, "f32, in terms of the bound"),
-            false => (1e-6, "f64"),
+            false => (1e-5, "f64"),
         };
         worst.assert_below(bound, &format!("{}, {precision}", what[k % 3]));
     }
