@@ -43,6 +43,8 @@ impl Tiny {
             },
             options: PlanOptions {
                 size: SIZE,
+                // By solid angle there is a scene of its own.
+                light_places: LightPlaces::Area,
                 ..PlanOptions::default()
             },
             adds: adds.to_vec(),
