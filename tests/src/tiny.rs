@@ -11,7 +11,8 @@ use residual_scenegen::desc::{
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::plan::{
-    Aperture, Binding, Focus, LightPicks, Optics, Plan, PlanOptions, TextureResolution, plan,
+    Aperture, Binding, Focus, LightPicks, LightPlaces, Optics, Plan, PlanOptions,
+    TextureResolution, plan,
 };
 
 use crate::fixtures::{
@@ -42,6 +43,8 @@ impl Tiny {
             },
             options: PlanOptions {
                 size: SIZE,
+                // By solid angle there is a scene of its own.
+                light_places: LightPlaces::Area,
                 ..PlanOptions::default()
             },
             adds: adds.to_vec(),
@@ -882,6 +885,13 @@ fn lights() -> Vec<Tiny> {
             );
         }
     };
+    let mut by_solid_angle = Tiny::new(
+        "light_by_solid_angle",
+        &[Effect::EmittingSurfaces, Effect::SolidAngleSampling],
+        &point,
+        lit(glowing(color([6.0, 5.0, 4.0]))),
+    );
+    by_solid_angle.options.light_places = LightPlaces::SolidAngle;
     let position = Vec3::new(0.4, 0.6, 1.2);
     let direction = Vec3::new(-0.3, -0.6, -0.8).normalize();
     let mut light_tree = Tiny::new(
@@ -917,6 +927,7 @@ fn lights() -> Vec<Tiny> {
     light_tree.options.light_picks = LightPicks::Tree;
     vec![
         light_tree,
+        by_solid_angle,
         Tiny::new(
             "emission",
             &[Effect::EmittingSurfaces],

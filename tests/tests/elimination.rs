@@ -85,7 +85,8 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("Mirror {", &[Effect::MirrorReflection]),
     ("interface: Thin|RoughSheet {", &[Effect::ThinTransmission]),
     ("interface: Solid|RoughDielectric {", &[Effect::Refraction]),
-    ("Area<", &[Effect::EmittingSurfaces]),
+    ("Area<|AreaBySolidAngle<", &[Effect::EmittingSurfaces]),
+    ("AreaBySolidAngle<", &[Effect::SolidAngleSampling]),
     ("emission: Some", &[Effect::EmittingSurfaces]),
     ("(Point, ", &[Effect::PointLights]),
     ("(Spot, ", &[Effect::SpotLights]),
@@ -156,6 +157,14 @@ const SOURCES: &[(&str, &[Effect])] = &[
     ),
     ("render/src/tracer/dispersing.rs", &[Effect::Dispersion]),
     ("render/src/light/area.rs", &[Effect::EmittingSurfaces]),
+    (
+        "render/src/light/area_by_solid_angle.rs",
+        &[Effect::SolidAngleSampling],
+    ),
+    (
+        "render/src/math/spherical_triangle.rs",
+        &[Effect::SolidAngleSampling],
+    ),
     ("render/src/light/sized.rs", SIZED_LIGHTS),
     (
         "render/src/light/punctual.rs",

@@ -57,6 +57,7 @@ goldens! {
     frosted_pane
     half_texels
     independent_sampler
+    light_by_solid_angle
     light_tree
     linear_texels
     masked_emission

@@ -5,11 +5,12 @@ use residual_render::domain::Buffer;
 use residual_render::film::Film;
 use residual_render::layer::{Layer, Layers};
 use residual_render::passes::RenderOptions;
+use residual_render::program::LightNode;
 use residual_render::tracer::{AnyMis, TracerNode};
 use residual_scenegen::desc::{
     AlphaMode, Filter, MaterialDesc, Projection, PunctualKind, ScalarInput, SceneDesc, Wrap,
 };
-use residual_scenegen::plan::{LightPicks, PlanOptions, plan};
+use residual_scenegen::plan::{LightPicks, LightPlaces, PlanOptions, plan};
 use residual_tests::Prepared;
 use residual_tests::fixtures::{self, Builder, color, material, matte, scalar, sheet};
 use std::ops::ControlFlow;
@@ -19,11 +20,19 @@ const SAMPLES: u32 = 1024;
 
 fn render(scene: &SceneDesc, mis: AnyMis, light_picks: LightPicks, seed: u32) -> Film {
     let options = PlanOptions {
+        light_picks,
+        light_places: LightPlaces::Area,
+        ..PlanOptions::default()
+    };
+    render_with(scene, mis, options, seed)
+}
+
+fn render_with(scene: &SceneDesc, mis: AnyMis, options: PlanOptions, seed: u32) -> Film {
+    let options = PlanOptions {
         size: SIZE,
         tracer: TracerNode::Path(mis),
-        light_picks,
         layers: Layers::NONE.with(Layer::StandardError),
-        ..PlanOptions::default()
+        ..options
     };
     let plan = plan(scene, &options).unwrap();
     let prepared = Prepared::new(&plan, LaneCount::native());
@@ -165,6 +174,89 @@ fn lights_may_be_picked_in_any_way() {
             agree(&mixed, &other, &format!("{name}, {picks:?}"));
         }
     }
+}
+
+/// Panels that nearly touch the walls and the floor of a corner.
+fn beside_panels(distance: f32) -> SceneDesc {
+    let mut b = Builder::new("panels");
+    let sheets = [
+        sheet([-2.0, 0.0, 2.0], [4.0, 0.0, 0.0], [0.0, 0.0, -4.0]),
+        sheet([-2.0, 0.0, -2.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]),
+    ];
+    b.add(material("walls", matte([0.8, 0.7, 0.6])), sheets);
+    let panel = MaterialDesc {
+        emission: color([3.0, 2.0, 1.0]),
+        double_sided: true,
+        ..material("panel", matte([0.5; 3]))
+    };
+    let low = sheet([-1.0, distance, 1.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.0]);
+    let high = sheet(
+        [-1.0, 1.0, distance - 2.0],
+        [2.0, 0.0, 0.0],
+        [0.0, 2.0, 0.0],
+    );
+    b.add(panel, [low, high]);
+    let lens = Projection::Perspective { yfov: 0.9 };
+    b.camera("camera", [0.5, 2.5, 5.5], [0.0, 1.0, 0.0], lens);
+    b.finish()
+}
+
+/// What is sampled by solid angle, and the density of what paths meet, belong together.
+#[test]
+fn places_by_area_and_by_solid_angle_give_one_image() {
+    let mut scenes = scenes();
+    scenes.push(("panels", beside_panels(0.05)));
+    for (name, scene) in scenes {
+        let by_area = render(&scene, AnyMis::PowerHeuristic, LightPicks::Mixed, 20);
+        let others = [
+            (AnyMis::PowerHeuristic, LightPicks::Mixed),
+            (AnyMis::BalanceHeuristic, LightPicks::Tree),
+            (AnyMis::LightsOnly, LightPicks::Mixed),
+        ];
+        for (seed, (mis, light_picks)) in (21..).zip(others) {
+            let options = PlanOptions {
+                light_picks,
+                light_places: LightPlaces::SolidAngle,
+                ..PlanOptions::default()
+            };
+            let other = render_with(&scene, mis, options, seed);
+            agree(
+                &by_area,
+                &other,
+                &format!("{name}, {mis:?}, by solid angle"),
+            );
+        }
+    }
+}
+
+#[test]
+fn triangles_are_sampled_by_solid_angle_where_it_pays() {
+    let by_solid_angle = |scene: &SceneDesc, light_places| {
+        let options = PlanOptions {
+            light_places,
+            ..PlanOptions::default()
+        };
+        let plan = plan(scene, &options).unwrap();
+        let lights = plan.structure.lights.iter();
+        lights
+            .filter(|light| matches!(light, LightNode::AreaBySolidAngle { .. }))
+            .count()
+    };
+    let near = beside_panels(0.05);
+    assert_eq!(by_solid_angle(&near, LightPlaces::Auto), 1);
+    assert_eq!(by_solid_angle(&near, LightPlaces::Area), 0);
+    let mut far = near;
+    // Behind the meshes of floor and wall are those of the panels.
+    for position in far.meshes[2..]
+        .iter_mut()
+        .flat_map(|mesh| &mut mesh.positions)
+    {
+        position.y += 40.0;
+    }
+    assert_eq!(by_solid_angle(&far, LightPlaces::Auto), 0);
+    assert_eq!(by_solid_angle(&far, LightPlaces::SolidAngle), 1);
+    let points = under_lamps([[0.0, 1.0, 0.0]]);
+    assert_eq!(by_solid_angle(&points, LightPlaces::SolidAngle), 0);
 }
 
 /// A floor under lamps at these places.

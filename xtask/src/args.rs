@@ -11,8 +11,8 @@ use residual_render::layer::{Layer, Layers};
 use residual_scenegen::plan::{Aperture, Focus, Optics};
 
 use crate::choices::{
-    CullingArg, DeviceArg, LightsArg, MappingArg, MisArg, SamplerArg, SpecializeArg, StudioArg,
-    TargetArg, TexturesArg, TierArg, TracerArg, ViewArg,
+    CullingArg, DeviceArg, LightPlacesArg, LightsArg, MappingArg, MisArg, SamplerArg,
+    SpecializeArg, StudioArg, TargetArg, TexturesArg, TierArg, TracerArg, ViewArg,
 };
 use crate::compare::args::CompareArgs;
 
@@ -153,6 +153,9 @@ pub(crate) struct SceneArgs {
     /// How often each light is picked
     #[arg(long, value_enum, default_value_t = LightsArg::Auto)]
     pub(crate) lights: LightsArg,
+    /// Where on emitting triangles light samples lie
+    #[arg(long, value_enum, default_value_t = LightPlacesArg::Auto)]
+    pub(crate) light_places: LightPlacesArg,
     /// How light is weighed that is found by sampling lights and by following the BSDF
     #[arg(long, value_enum, default_value_t = MisArg::Power)]
     pub(crate) mis: MisArg,

@@ -52,6 +52,16 @@ pub(crate) enum LightsArg {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LightPlacesArg {
+    /// By solid angle where triangles are so near that it pays, by area elsewhere
+    Auto,
+    /// Evenly by area
+    Area,
+    /// Evenly by solid angle
+    SolidAngle,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MisArg {
     /// By the power heuristic
     Power,

@@ -13,12 +13,14 @@ use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{
-    Binding, BodyRule, CameraChoice, CullingRule, LightPicks, Plan, PlanOptions, TextureResolution,
-    View, plan,
+    Binding, BodyRule, CameraChoice, CullingRule, LightPicks, LightPlaces, Plan, PlanOptions,
+    TextureResolution, View, plan,
 };
 
 use crate::args::SceneArgs;
-use crate::choices::{CullingArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TexturesArg};
+use crate::choices::{
+    CullingArg, LightPlacesArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TexturesArg,
+};
 
 /// What statistics say about a planned scene.
 pub(crate) fn summary(plan: &Plan) -> SceneSummary {
@@ -116,6 +118,11 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
             LightsArg::Power => LightPicks::Power,
             LightsArg::Uniform => LightPicks::Uniform,
             LightsArg::Tree => LightPicks::Tree,
+        },
+        light_places: match args.light_places {
+            LightPlacesArg::Auto => LightPlaces::Auto,
+            LightPlacesArg::Area => LightPlaces::Area,
+            LightPlacesArg::SolidAngle => LightPlaces::SolidAngle,
         },
         textures: match args.textures {
             TexturesArg::Full => TextureResolution::Full,

@@ -6,14 +6,14 @@ use residual_render::bsdf::{
 };
 use residual_render::domain::{Buffer, Domain, Lanes};
 use residual_render::light::{
-    self, Area, AreaRecord, Directional, Environment, LightKind, LightSample, Point,
-    PunctualRecord, SphericalPoint, SphericalSpot, Spot, Sun,
+    self, Area, AreaBySolidAngle, AreaBySolidAngleRecord, AreaRecord, Directional, Environment,
+    LightKind, LightSample, Point, PunctualRecord, SphericalPoint, SphericalSpot, Spot, Sun,
 };
 use residual_render::math::vec3::vec3;
 use residual_render::record::BufferRecord;
 use residual_render::sampler::{AnySampler, SampleKey, Sampler};
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{Attributes, Footprint, Surface, SurfaceHit};
+use residual_render::surface::{Attributes, Footprint, PathRay, Surface, SurfaceHit};
 use residual_render::texture::{
     AnyFilter, AnyFormat, AnyWrap, Checkerboard, ColorSource, Const, Image, ImageParam,
     ScalarSource, TransformParam, UvMap,
@@ -133,6 +133,8 @@ macro_rules! light_formula {
                 let sample = self.0.sample(d, d.uint(0), surface.point, [a, b, c]);
                 let mut results = light_words(d, sample);
                 results.extend(light_words(d, light::sample(d, &(self.0, ()), surface.point, [c, a, u])));
+                let ray = PathRay::unbounded(d, surface.point, sample.wi);
+                results.extend(words(d, self.0.density(d, d.uint(0), &ray, &surface)));
                 if let Some(seen) = self.0.background(d, sample.wi) {
                     results.extend(words(d, vector(seen.radiance).into_iter().chain([seen.pdf])));
                 }
@@ -146,6 +148,7 @@ macro_rules! light_formula {
 
 light_formula!(
     Area<Const<[f32; 3]>>,
+    AreaBySolidAngle<Const<[f32; 3]>>,
     Point,
     Spot,
     Directional,
@@ -171,6 +174,18 @@ fn lights_agree() {
     };
     set_lights(&mut data, &[lamp], &[1.0]);
     check("area", &data, &Light(area), &inputs);
+    let near = AreaBySolidAngle {
+        emission: area.emission,
+        attributes: area.attributes,
+    };
+    let lamp = AreaBySolidAngleRecord {
+        kind: 0,
+        triangle: 1,
+        double_sided: 1,
+        normal: [0.8, -0.7, 1.6].into(),
+    };
+    set_lights(&mut data, &[lamp], &[1.0]);
+    check("area by solid angle", &data, &Light(near), &inputs);
     let axis = [0.0, 0.0, -1.0];
     let spot = PunctualRecord::spot(0, [0.3, 0.2, 0.933], [5.0, 4.0, 3.0], axis, [0.4, 1.3]);
     set_lights(&mut data, &[spot], &[1.0]);

@@ -18,6 +18,7 @@ mod media;
 mod microfacet;
 mod sampler;
 mod sized_lights;
+mod solid_angle_lights;
 mod spawn;
 mod spectrum;
 mod support;

@@ -8,7 +8,9 @@ use crate::desc::{
 };
 use crate::desc_inputs::{InputMut, MaterialInput};
 use crate::effect::Effect;
-use crate::plan::{BodyRule, CullingRule, LightPicks, Optics, PlanOptions, TextureResolution};
+use crate::plan::{
+    BodyRule, CullingRule, LightPicks, LightPlaces, Optics, PlanOptions, TextureResolution,
+};
 use crate::sixteen_bits;
 
 /// How an effect is taken out of a scene, in words; `None` for those without which there is no picture, or which
@@ -46,6 +48,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::Environment => "black",
         Effect::DepthOfField => "a pinhole",
         Effect::LightTree => "picked from a table",
+        Effect::SolidAngleSampling => "by area",
         Effect::DiffuseReflection
         | Effect::MixedLobes
         | Effect::NearestFilter
@@ -84,6 +87,7 @@ pub fn without(
         Effect::BackFaceCulling => options.culling = CullingRule::None,
         Effect::NestedBodies => options.bodies = BodyRule::Beside,
         Effect::LightTree => options.light_picks = LightPicks::Mixed,
+        Effect::SolidAngleSampling => options.light_places = LightPlaces::Area,
         Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => {
             let lights = &mut scene.lights;
             lights.retain(|light| light.size > 0.0 || light_effect(light) != effect);

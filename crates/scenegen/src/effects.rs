@@ -303,6 +303,7 @@ fn format_effect(format: AnyFormat) -> Effect {
 fn light_effect(light: &LightNode) -> Effect {
     match light {
         LightNode::Area { .. } => Effect::EmittingSurfaces,
+        LightNode::AreaBySolidAngle { .. } => Effect::SolidAngleSampling,
         LightNode::Point => Effect::PointLights,
         LightNode::Spot => Effect::SpotLights,
         LightNode::Directional => Effect::DirectionalLights,

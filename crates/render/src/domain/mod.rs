@@ -104,7 +104,7 @@ pub enum Buffer {
     /// Texels of all images, each as its [`TexelFormat`](crate::texture::TexelFormat) stores it.
     Texels,
     /// The record of its kind for each light: [`AreaRecord`](crate::light::AreaRecord),
-    /// [`PunctualRecord`](crate::light::PunctualRecord), or [`LightRecord`](crate::light::LightRecord) for the
+    /// [`AreaBySolidAngleRecord`](crate::light::AreaBySolidAngleRecord), [`PunctualRecord`](crate::light::PunctualRecord), or [`LightRecord`](crate::light::LightRecord) for the
     /// environment. They lie [`LIGHT_WORDS`](crate::light::LIGHT_WORDS) apart.
     Lights,
     /// A [`PickHeader`](crate::light::PickHeader), and an [`AliasEntry`](crate::alias_table::AliasEntry) for each light. Only

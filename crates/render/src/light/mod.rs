@@ -5,6 +5,7 @@
 //! at the point, then sampled by its kind.
 
 mod area;
+mod area_by_solid_angle;
 mod by_tree;
 mod emission;
 mod environment;
@@ -16,6 +17,7 @@ mod sized;
 mod tree;
 
 pub use area::{Area, AreaRecord};
+pub use area_by_solid_angle::{AreaBySolidAngle, AreaBySolidAngleRecord};
 pub use by_tree::ByTree;
 pub use emission::{Emission, EmissionNumbers, NOT_FOUND, SceneSphereRecord, emit};
 pub use environment::{Environment, EnvironmentHeader, set_environment};

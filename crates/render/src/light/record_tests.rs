@@ -1,6 +1,7 @@
 //! What the records of all kinds of lights have in common.
 
 use super::area::AreaRecord;
+use super::area_by_solid_angle::AreaBySolidAngleRecord;
 use super::pick::LightRecord;
 use super::punctual::PunctualRecord;
 
@@ -9,5 +10,6 @@ use super::punctual::PunctualRecord;
 fn every_record_begins_with_the_kind() {
     let kind = LightRecord::offsets().kind;
     assert_eq!(kind, AreaRecord::offsets().kind);
+    assert_eq!(kind, AreaBySolidAngleRecord::offsets().kind);
     assert_eq!(kind, PunctualRecord::offsets().kind);
 }

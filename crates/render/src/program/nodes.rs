@@ -86,6 +86,7 @@ nodes! {
     /// A kind of light.
     LightNode: LightKind in light {
         Area { emission: ColorNode, attributes: Attributes },
+        AreaBySolidAngle { emission: ColorNode, attributes: Attributes },
         Point,
         Spot,
         Directional,

@@ -237,6 +237,10 @@ pub(crate) fn light_kinds() -> Vec<LightNode> {
             emission: ColorNode::Image(image(9)),
             attributes,
         },
+        LightNode::AreaBySolidAngle {
+            emission: ColorNode::Image(image(9)),
+            attributes,
+        },
         LightNode::Point,
         LightNode::Spot,
         LightNode::Directional,

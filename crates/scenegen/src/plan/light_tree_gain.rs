@@ -1,10 +1,11 @@
 //! Whether a tree of lights pays: how much less variance it has than a table, at points on the scene's surfaces.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use residual_render::domain::{Scalar, Uint};
 use residual_render::light::LightTree;
 use residual_render::scene_data::SceneData;
 
+use super::equal_areas;
 use super::light_tree::{LightBounds, Reach};
 
 /// Points at which it is looked.
@@ -16,7 +17,8 @@ pub(super) fn gain(lights: &[(Reach, f64)], tree: LightTree, data: &SceneData) -
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
     let (mut logarithms, mut points) = (0.0, 0.0);
-    for at in points_on_surfaces(data) {
+    for [a, b, c] in equal_areas::triangles(data, POINTS) {
+        let at = (a + b + c) / 3.0;
         let (mut by_table, mut by_tree) = (0.0, 0.0);
         for (light, (reach, probability)) in lights.iter().enumerate() {
             let arriving = match reach {
@@ -41,28 +43,6 @@ pub(super) fn gain(lights: &[(Reach, f64)], tree: LightTree, data: &SceneData) -
         return 1.0;
     }
     f64::exp(logarithms / points)
-}
-
-/// The middles of triangles that stand for equal parts of all area.
-fn points_on_surfaces(data: &SceneData) -> Vec<DVec3> {
-    let positions = data.positions();
-    let triangles: Vec<_> = positions
-        .chunks_exact(3)
-        .map(|corners| {
-            let [a, b, c] = [0, 1, 2].map(|k| Vec3::from_array(corners[k]).as_dvec3());
-            ((a + b + c) / 3.0, (b - a).cross(c - a).length())
-        })
-        .collect();
-    let total: f64 = triangles.iter().map(|(_, area)| area).sum();
-    let mut points = Vec::with_capacity(POINTS);
-    let mut sum = 0.0;
-    for (middle, area) in triangles {
-        sum += area;
-        while sum * POINTS as f64 > total * (points.len() as f64 + 0.5) {
-            points.push(middle);
-        }
-    }
-    points
 }
 
 /// What arrives at a point from a light, as if it stood in the middle of its box.

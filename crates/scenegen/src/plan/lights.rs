@@ -2,8 +2,9 @@
 
 use std::collections::HashSet;
 
+use glam::DVec3;
 use residual_render::alias_table::alias_entries;
-use residual_render::domain::Buffer;
+use residual_render::domain::{Buffer, Scalar, Uint};
 use residual_render::light::{
     self, AreaRecord, EnvironmentHeader, LightRecord, LightTree, PunctualRecord, push_light,
     set_picks,
@@ -14,9 +15,11 @@ use residual_render::texture::srgb_table;
 
 use super::geometry::Geometry;
 use super::images::Images;
+use super::light_places;
+use super::light_places_gain::Emitter;
 use super::light_tree::{self, LightBounds, Reach};
 use super::light_tree_gain;
-use super::options::LightPicks;
+use super::options::{LightPicks, LightPlaces, PlanOptions};
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
 use super::punctual::Punctual;
@@ -36,6 +39,10 @@ pub(super) struct PlannedLights {
     powers: Vec<(f64, usize)>,
     /// Where each shines.
     reaches: Vec<Reach>,
+    /// How often each is picked from a table.
+    probabilities: Vec<f64>,
+    /// Those that are triangles.
+    emitters: Vec<Emitter>,
 }
 
 /// Of fewer lights at finite places there is no tree, unless it is asked for.
@@ -70,7 +77,7 @@ pub(super) fn plan_lights(
     materials: &Materials,
     geometry: &Geometry,
     images: &mut Images,
-    picks: LightPicks,
+    options: &PlanOptions,
     data: &mut SceneData,
 ) -> PlannedLights {
     let mut lights = PlannedLights::default();
@@ -82,7 +89,8 @@ pub(super) fn plan_lights(
     if let Some(environment) = &scene.environment {
         lights.add_environment(scene, environment, images, radius, data);
     }
-    lights.set_picks(picks, data);
+    lights.set_picks(options.light_picks_of_tracer(), data);
+    lights.set_places(options.light_places_of_tracer(), data);
     lights
 }
 
@@ -196,7 +204,7 @@ impl PlannedLights {
             let mut kind = None;
             for prim in object.triangles.clone() {
                 let corners = [0, 1, 2].map(|corner| {
-                    glam::DVec3::from_array(positions[3 * prim as usize + corner].map(f64::from))
+                    DVec3::from_array(positions[3 * prim as usize + corner].map(f64::from))
                 });
                 let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
                 let area = normal.length() * 0.5;
@@ -210,12 +218,18 @@ impl PlannedLights {
                         double_sided: u32::from(emission.double_sided),
                     };
                     push_light(data, record);
+                    self.emitters.push(Emitter {
+                        light: self.powers.len(),
+                        corners,
+                        radiance,
+                        double_sided: emission.double_sided,
+                    });
                     let reach = Reach::Bounded(LightBounds {
                         corners: [
                             corners[0].min(corners[1]).min(corners[2]),
                             corners[0].max(corners[1]).max(corners[2]),
                         ],
-                        axis: normal.normalize_or(glam::DVec3::Z),
+                        axis: normal.normalize_or(DVec3::Z),
                         half_angle: match emission.double_sided {
                             true => std::f64::consts::PI,
                             false => 0.0,
@@ -308,6 +322,7 @@ impl PlannedLights {
             LightPicks::Uniform => 1.0 / self.powers.len() as f64,
         };
         let probabilities: Vec<f64> = self.powers.iter().map(probability).collect();
+        self.probabilities.clone_from(&probabilities);
         self.picks = picks;
         if let LightPicks::Auto | LightPicks::Tree = picks {
             let reaches = self.reaches.iter().copied();
@@ -322,6 +337,22 @@ impl PlannedLights {
             return;
         }
         set_picks(data, alias_entries(&probabilities, 1.0));
+    }
+
+    /// Where samples lie on triangles.
+    fn set_places(&mut self, places: LightPlaces, data: &mut SceneData) {
+        let buffers = data.buffers();
+        let d = Scalar::new(&buffers);
+        let pick = |at: DVec3, light: usize| match self.tree {
+            Some(tree) => {
+                let at = at.as_vec3().to_array().into();
+                tree.probability(d, at, Uint(light as u32)).into()
+            }
+            None => self.probabilities[light],
+        };
+        if light_places::by_solid_angle(places, &self.emitters, pick, data) {
+            light_places::set_by_solid_angle(&self.emitters, &mut self.kinds, data);
+        }
     }
 }
 

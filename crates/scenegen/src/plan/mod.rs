@@ -11,12 +11,15 @@ mod camera_choice;
 mod clip_distances;
 mod closed;
 mod coincident;
+mod equal_areas;
 mod error;
 mod explain;
 mod geometry;
 mod image_levels;
 mod image_reading;
 mod images;
+mod light_places;
+mod light_places_gain;
 mod light_tree;
 mod light_tree_gain;
 #[cfg(test)]
@@ -49,7 +52,9 @@ use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
 pub use optics::{Aperture, Focus, Optics};
-pub use options::{Binding, BodyRule, CullingRule, LightPicks, PlanOptions, TextureResolution};
+pub use options::{
+    Binding, BodyRule, CullingRule, LightPicks, LightPlaces, PlanOptions, TextureResolution,
+};
 pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
 
 use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
@@ -73,7 +78,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             &materials,
             &geometry,
             &mut images,
-            options.light_picks_of_tracer(),
+            options,
             &mut data,
         ),
         TracerNode::AmbientOcclusion | TracerNode::Debug(_) => lights::PlannedLights::default(),

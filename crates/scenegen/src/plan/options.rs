@@ -54,6 +54,18 @@ pub enum LightPicks {
     Tree,
 }
 
+/// Where on emitting triangles light samples lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LightPlaces {
+    /// Evenly by solid angle where triangles are so near to surfaces that it pays, evenly by area elsewhere.
+    #[default]
+    Auto,
+    /// Evenly by area.
+    Area,
+    /// Evenly by solid angle, as the point sees the triangle.
+    SolidAngle,
+}
+
 /// At which resolution textures are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum TextureResolution {
@@ -83,6 +95,8 @@ pub struct PlanOptions {
     pub flat_normals: bool,
     /// How often each light is picked.
     pub light_picks: LightPicks,
+    /// Where on emitting triangles light samples lie.
+    pub light_places: LightPlaces,
     /// At which resolution textures are read.
     pub textures: TextureResolution,
     /// Sampler.
@@ -104,6 +118,7 @@ impl Default for PlanOptions {
             bodies: BodyRule::default(),
             flat_normals: false,
             light_picks: LightPicks::default(),
+            light_places: LightPlaces::default(),
             textures: TextureResolution::default(),
             sampler: AnySampler::Sobol,
             tracer: TracerNode::default(),
@@ -126,6 +141,15 @@ impl PlanOptions {
                 LightPicks::Mixed
             }
             picks => picks,
+        }
+    }
+
+    /// Where light samples of the tracer lie on emitting triangles. Light leaves them evenly by area, which is what light paths are
+    /// weighed against.
+    pub(super) fn light_places_of_tracer(&self) -> LightPlaces {
+        match self.tracer.has_light_paths() {
+            true => LightPlaces::Area,
+            false => self.light_places,
         }
     }
 }

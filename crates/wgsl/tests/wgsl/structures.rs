@@ -271,6 +271,10 @@ pub(crate) fn lights() -> Vec<LightNode> {
     };
     vec![
         area(ColorNode::Param(0), Attributes::default()),
+        LightNode::AreaBySolidAngle {
+            emission: ColorNode::Image(images()[0]),
+            attributes: uv0,
+        },
         area(ColorNode::Image(images()[0]), uv0),
         area(
             ColorNode::Gray(Box::new(ScalarNode::AtLeast(
