@@ -15,6 +15,7 @@ mod render;
 #[cfg(feature = "wgpu")]
 mod render_wgpu;
 mod scene;
+mod time;
 
 use std::process::ExitCode;
 

@@ -14,6 +14,7 @@ use residual_frontend::{note, out};
 use crate::args::RenderArgs;
 use crate::choices::{MappingArg, TierArg};
 use crate::scene;
+use crate::time::Exposure;
 
 /// Renders on a GPU.
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
@@ -45,7 +46,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             gpu.adapter.name
         );
     }
-    let (plan, load) = scene::load(&args.scene)?;
+    let (plan, load) = scene::load(&args.scene, Exposure::of(&args.render))?;
+    ensure!(
+        plan.motion.is_none(),
+        "--shutter: motion blur is rendered on the processor; render with --device cpu"
+    );
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let cpu = CpuDevice::new(args.render.threads).context("starting threads")?;
     let options = args

@@ -9,6 +9,7 @@ use residual_render::light::{
     set_picks,
 };
 use residual_render::program::{ColorNode, LightNode, Program, Source, SourceNode};
+use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
 
@@ -21,7 +22,7 @@ use super::planned::LightKindUse;
 use super::planned_materials::Materials;
 use super::punctual::Punctual;
 use crate::desc::{
-    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, SceneDesc, SurfaceDesc, Texels, Wrap,
+    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, Pose, SceneDesc, SurfaceDesc, Texels, Wrap,
 };
 use crate::sixteen_bits;
 
@@ -36,6 +37,10 @@ pub(super) struct PlannedLights {
     powers: Vec<(f64, usize)>,
     /// Where each shines.
     reaches: Vec<Reach>,
+    /// What arrives of the environment from all directions together.
+    environment: f64,
+    /// All lights are there only because there are some at other moments.
+    pub(super) is_dark: bool,
 }
 
 /// Of fewer lights at finite places there is no tree, unless it is asked for.
@@ -64,17 +69,17 @@ fn tree(lights: &[(Reach, f64)], picks: LightPicks, data: &mut SceneData) -> Opt
     Some(tree)
 }
 
-/// Plans all lights and writes their buffers.
+/// Plans all lights of the scene's first pose and writes their buffers. `radius` is that of the sphere around everything.
 pub(super) fn plan_lights(
     scene: &SceneDesc,
     materials: &Materials,
     geometry: &Geometry,
+    radius: f64,
     images: &mut Images,
     picks: LightPicks,
     data: &mut SceneData,
 ) -> PlannedLights {
     let mut lights = PlannedLights::default();
-    let radius = f64::from(geometry.bounds.sphere().1);
     lights.add_emitting_triangles(scene, materials, geometry, data);
     for light in &scene.lights {
         lights.add_punctual(light, radius, data);
@@ -82,8 +87,76 @@ pub(super) fn plan_lights(
     if let Some(environment) = &scene.environment {
         lights.add_environment(scene, environment, images, radius, data);
     }
+    if !scene.later.is_empty() {
+        lights.stay_countable(data);
+    }
     lights.set_picks(picks, data);
     lights
+}
+
+impl PlannedLights {
+    /// Plans the lights of a later pose, so that one renderer serves both: kinds keep their indices, and lights are picked from
+    /// a tree or a table as at the first moment, whose data `first` are.
+    pub(super) fn plan_later(
+        &mut self,
+        scene: &SceneDesc,
+        pose: Pose<'_>,
+        materials: &Materials,
+        geometry: &Geometry,
+        radius: f64,
+        (first, data): (&SceneData, &mut SceneData),
+    ) {
+        let mut lights = Self {
+            kinds: std::mem::take(&mut self.kinds),
+            uses: vec![LightKindUse::default(); self.uses.len()],
+            environment: self.environment,
+            ..Self::default()
+        };
+        lights.add_emitting_triangles(scene, materials, geometry, data);
+        for light in pose.lights {
+            lights.add_punctual(light, radius, data);
+        }
+        if lights.environment > 0.0 {
+            // Only the number of lights before it can have changed.
+            let words = first.buffer(Buffer::Environment);
+            let header = EnvironmentHeader {
+                light: lights.powers.len() as u32,
+                ..EnvironmentHeader::from_words(words)
+            };
+            data.buffer_mut(Buffer::Environment).extend(words);
+            header.write_to(data.buffer_mut(Buffer::Environment));
+            lights.push_environment(scene, radius, data);
+        }
+        lights.stay_countable(data);
+        lights.set_picks(self.picks, data);
+        self.take_in(lights);
+    }
+
+    /// Notes what another pose has.
+    fn take_in(&mut self, other: Self) {
+        self.kinds = other.kinds;
+        self.uses.resize(self.kinds.len(), LightKindUse::default());
+        for (ours, theirs) in self.uses.iter_mut().zip(other.uses) {
+            if ours.count == 0 {
+                *ours = theirs;
+            }
+        }
+        if let (Some(ours), Some(theirs)) = (&mut self.tree, other.tree) {
+            ours.levels = ours.levels.max(theirs.levels);
+        }
+        self.is_dark &= other.is_dark;
+    }
+
+    /// Where a pose has no light, one that is dark stands for those of other poses, as renderers that pick lights need one to pick.
+    fn stay_countable(&mut self, data: &mut SceneData) {
+        self.is_dark = self.powers.is_empty();
+        if self.is_dark {
+            let kind = self.kind(LightNode::Point);
+            push_light(data, PunctualRecord::new(kind as u32, [0.0; 3], [0.0; 3]));
+            self.powers.push((1.0, kind));
+            self.reaches.push(Reach::Everywhere);
+        }
+    }
 }
 
 /// The triangles of a program, which emit what a source gives. Shadow rays end before the light, so that nobody asks for
@@ -259,18 +332,11 @@ impl PlannedLights {
             return;
         }
         let index = self.powers.len() as u32;
-        let kind = self.kind(LightNode::Environment);
         // The weights' mean is the mean of luminance·sin θ; ∫L dω = 2π²·that.
         let mean = total / weights.len() as f64;
-        let irradiance =
+        self.environment =
             2.0 * std::f64::consts::PI.powi(2) * mean * f64::from(environment.strength);
-        push_light(data, LightRecord { kind: kind as u32 });
-        self.count(
-            kind,
-            &format!("environment {:?}", image.name),
-            std::f64::consts::PI * radius * radius * irradiance,
-            Reach::Everywhere,
-        );
+        self.push_environment(scene, radius, data);
 
         let texels = images.environment(scene, environment.image);
         let (sin, cos) = environment.rotation.sin_cos();
@@ -286,6 +352,19 @@ impl PlannedLights {
         light::set_environment(data, header, alias_entries(&weights, mean));
     }
 
+    fn push_environment(&mut self, scene: &SceneDesc, radius: f64, data: &mut SceneData) {
+        let kind = self.kind(LightNode::Environment);
+        push_light(data, LightRecord { kind: kind as u32 });
+        let image = scene.environment.as_ref().map(|sky| sky.image);
+        let name = image.map_or("", |image| &scene.images[image].name);
+        self.count(
+            kind,
+            &format!("environment {name:?}"),
+            std::f64::consts::PI * radius * radius * self.environment,
+            Reach::Everywhere,
+        );
+    }
+
     /// Mixed picks go by power, and evenly to emitting triangles, points, spots, … as far as there are any. How many *programs* for emission there are must
     /// not matter: it differs between binding policies, whose images are the same.
     fn set_picks(&mut self, picks: LightPicks, data: &mut SceneData) {
@@ -299,7 +378,8 @@ impl PlannedLights {
             alike.map(|(power, _)| power).sum()
         };
         let sums: Vec<f64> = (0..self.kinds.len()).map(of_variant).collect();
-        let variants: HashSet<_> = (0..self.kinds.len()).map(variant).collect();
+        // Of some kinds there may be lights at other moments only.
+        let variants: HashSet<_> = self.powers.iter().map(|(_, kind)| variant(*kind)).collect();
         let probability = |&(power, kind): &(f64, usize)| match picks {
             LightPicks::Auto | LightPicks::Mixed | LightPicks::Tree => {
                 0.5 * power / total + 0.5 * power / sums[kind] / variants.len() as f64

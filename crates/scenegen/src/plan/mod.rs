@@ -25,6 +25,7 @@ mod lights;
 mod materials;
 mod media;
 mod metallic_roughness;
+mod motion;
 mod opacity;
 mod optics;
 mod options;
@@ -46,11 +47,16 @@ pub use camera_choice::{CameraChoice, View};
 use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
+use motion::First;
+pub use motion::Motion;
 pub use optics::{Aperture, Focus, Optics};
 pub use options::{Binding, BodyRule, CullingRule, LightPicks, PlanOptions, TextureResolution};
 pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
 
-use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
+use crate::desc::{
+    Dismissed, EnvironmentDesc, ImageDesc, NOTHING_MOVES, SceneDesc, Texels, Warning, WarningKind,
+};
+use crate::effect::Effect;
 
 /// Plans a scene.
 ///
@@ -62,14 +68,17 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let mut images = images::Images::default();
 
     let materials = materials::plan_materials(scene, options, &mut images);
-    let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
+    let mut geometry =
+        geometry::pack(scene, scene.pose(0), &materials, &mut data, &mut warnings)?;
+    motion::set_bounds(scene, &materials, &mut geometry.bounds);
     let hidden = coincident::hide(&mut data);
     // Only paths need lights.
-    let lights = match options.tracer {
+    let mut lights = match options.tracer {
         TracerNode::Path(_) => lights::plan_lights(
             scene,
             &materials,
             &geometry,
+            f64::from(geometry.bounds.sphere().1),
             &mut images,
             options.light_picks,
             &mut data,
@@ -79,18 +88,17 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let needs_light = matches!(options.tracer, TracerNode::Path(_));
     // A black environment is darkness that was asked for.
     if needs_light && lights.kinds.is_empty() && scene.environment.is_none() {
-        let mut plan = plan(&scene.with_white_sky(), options)?;
-        plan.warnings.push(Warning {
-            kind: WarningKind::NoLight,
-            place: "lights".to_owned(),
-            message: "the scene has no light; using a white sky (--env FILE for another)"
-                .to_owned(),
-        });
-        return Ok(plan);
+        return plan_under_white_sky(scene, options);
     }
-    let (camera, chosen) =
-        camera::choose(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
-    if materials.programs.iter().any(Program::filters) {
+    let (camera, shot) = camera::choose(
+        (scene, scene.pose(0)),
+        options,
+        &geometry.bounds,
+        None,
+        &mut data,
+        &mut warnings,
+    )?;
+    if materials.filter() {
         camera::set_pixel_cone(&camera, &mut data);
     }
     let mut dismissed = [&scene.dismissed[..], &materials.dismissed].concat();
@@ -101,13 +109,30 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             reason: format!("{hidden} triangles lie exactly on others, which hide them"),
         });
     }
+    let chosen = &shot.camera;
     match chosen
         .clip
-        .map(|clip| clip_distances::look(clip, &chosen, &data))
+        .map(|clip| clip_distances::look(clip, chosen, &data))
     {
         Some(Clipping::Something(warning)) => warnings.push(warning),
         Some(Clipping::Nothing(reason)) => dismissed.push(reason),
         None => {}
+    }
+    let mut depth = geometry.bounds.farthest(chosen.position);
+    let first = First {
+        scene,
+        options,
+        materials: &materials,
+        geometry: &geometry,
+        camera: (&camera, &shot),
+        data: &data,
+    };
+    let motion = first.motion(&mut lights, &mut depth, &mut warnings)?;
+    if motion.is_none() && !scene.later.is_empty() {
+        return plan_with_closed_shutter(scene, options);
+    }
+    if needs_light && lights.is_dark && scene.environment.is_none() {
+        return plan_under_white_sky(scene, options);
     }
     images.pack(scene, &mut data)?;
     *data.buffer_mut(Buffer::Params) = materials.params;
@@ -136,11 +161,12 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             layers: options.layers,
         },
         data,
+        motion,
         materials: materials.uses,
         objects: geometry.objects,
         lights: lights.uses,
-        depth: geometry.bounds.farthest(chosen.position),
-        camera_name: chosen.name,
+        depth,
+        camera_name: shot.camera.name,
         diagonal: 2.0 * geometry.bounds.sphere().1,
         warnings,
         dismissed,
@@ -163,6 +189,30 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     if of_objects.iter().any(|&layer| options.layers.has(layer)) {
         plan.pack_objects();
     }
+    Ok(plan)
+}
+
+/// Plans a scene in which nothing that is seen moves.
+fn plan_with_closed_shutter(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError> {
+    let mut scene = scene.clone();
+    scene.close_shutter();
+    let mut plan = plan(&scene, options)?;
+    plan.dismissed.push(Dismissed {
+        effect: Some(Effect::MotionBlur),
+        place: "animations".to_owned(),
+        reason: NOTHING_MOVES.to_owned(),
+    });
+    Ok(plan)
+}
+
+/// Plans a scene that has no light of its own.
+fn plan_under_white_sky(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError> {
+    let mut plan = plan(&scene.with_white_sky(), options)?;
+    plan.warnings.push(Warning {
+        kind: WarningKind::NoLight,
+        place: "lights".to_owned(),
+        message: "the scene has no light; using a white sky (--env FILE for another)".to_owned(),
+    });
     Ok(plan)
 }
 

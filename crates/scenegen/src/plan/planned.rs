@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use residual_render::changed_data::ChangedData;
 use residual_render::cryptomatte;
 use residual_render::domain::Buffer;
 use residual_render::layer::Layer;
@@ -11,6 +12,7 @@ use residual_render::scene_data::SceneData;
 use residual_render::tracer::{MatterNode, TracerNode};
 use residual_render::triangle::ObjectRecord;
 
+use super::motion::Motion;
 use super::options::{Binding, LightPicks};
 use crate::desc::{Dismissed, Warning};
 
@@ -25,8 +27,10 @@ pub struct Plan {
     pub light_picks: LightPicks,
     /// The static half.
     pub structure: Structure,
-    /// The dynamic half.
+    /// The dynamic half; where the shutter is open, at the first moment.
     pub data: SceneData,
+    /// What moves while the shutter is open, if anything does.
+    pub motion: Option<Motion>,
     /// For each program, the materials that use it.
     pub materials: Vec<Vec<MaterialUse>>,
     /// What is seen, in the order of its triangles: a triangle's object is an index into this list.
@@ -56,6 +60,13 @@ impl Plan {
                 material_name_id: cryptomatte::id(&object.material_name),
             });
         }
+    }
+
+    /// Bytes of the data at all moments.
+    pub fn memory_bytes(&self) -> usize {
+        let later = self.motion.iter().flat_map(|motion| &motion.later);
+        let later: usize = later.map(ChangedData::memory_bytes).sum();
+        self.data.memory_bytes() + later
     }
 
     /// The names behind the ids of a Cryptomatte layer; `None` for other layers.

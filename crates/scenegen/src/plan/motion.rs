@@ -1,0 +1,180 @@
+//! What moves while the shutter is open: the data at other moments, for the renderer of the first.
+//!
+//! Whatever a plan decides by what is in the scene is decided once for all poses: a surface is smooth and bodies lie within each
+//! other if they do so in any of them, a mesh is closed if it is so in all; lights are picked by a tree if that pays at the first.
+//! So the structure is one, and only data differ.
+
+use std::collections::HashSet;
+
+use residual_render::changed_data::ChangedData;
+use residual_render::domain::Buffer;
+use residual_render::program::CameraNode;
+use residual_render::scene_data::SceneData;
+use residual_render::tracer::TracerNode;
+
+use super::camera::{self, Bounds, Shot};
+use super::clip_distances::{self, Clipping};
+use super::error::PlanError;
+use super::geometry::Geometry;
+use super::lights::PlannedLights;
+use super::options::PlanOptions;
+use super::planned_materials::Materials;
+use super::{coincident, geometry};
+use crate::desc::{Pose, SceneDesc, Warning};
+
+/// What a scene shows while the shutter is open.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    /// What of the data is different in other poses than the first, whose data are the plan's.
+    pub later: Vec<ChangedData>,
+    /// For each moment, in order of time, the pose then: 0 is the first, `k` is that of `later[k - 1]`.
+    pub moments: Vec<usize>,
+    /// What moves, such as `node "Wheel"`.
+    pub sources: Vec<String>,
+}
+
+/// The first pose, planned, by which the others go.
+pub(super) struct First<'a> {
+    pub(super) scene: &'a SceneDesc,
+    pub(super) options: &'a PlanOptions,
+    pub(super) materials: &'a Materials,
+    pub(super) geometry: &'a Geometry,
+    pub(super) camera: (&'a CameraNode, &'a Shot),
+    pub(super) data: &'a SceneData,
+}
+
+/// What is the same whatever moves: what is made of materials, images and names alone.
+const SAME: [Buffer; 4] = [
+    Buffer::Texels,
+    Buffer::Params,
+    Buffer::Media,
+    Buffer::Objects,
+];
+
+impl First<'_> {
+    /// Plans the other poses; `None` where nothing that is seen moves.
+    pub(super) fn motion(
+        &self,
+        lights: &mut PlannedLights,
+        depth: &mut f32,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Option<Motion>, PlanError> {
+        let scene = self.scene;
+        let mut later = Vec::new();
+        // By the description's poses. Those that differ in nothing that is seen are the first.
+        let mut poses = vec![0];
+        for index in 1..=scene.later.len() {
+            let changed = self.pose(scene.pose(index), lights, depth, warnings)?;
+            poses.push(match changed.is_empty() {
+                true => 0,
+                false => {
+                    later.push(changed);
+                    later.len()
+                }
+            });
+        }
+        if later.is_empty() {
+            return Ok(None);
+        }
+        let moments = scene.moments.iter().map(|&pose| poses[pose]).collect();
+        let sources = self.sources(&later);
+        Ok(Some(Motion {
+            later,
+            moments,
+            sources,
+        }))
+    }
+
+    /// Plans a pose.
+    fn pose(
+        &self,
+        pose: Pose<'_>,
+        lights: &mut PlannedLights,
+        depth: &mut f32,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<ChangedData, PlanError> {
+        let Self {
+            scene,
+            options,
+            materials,
+            ..
+        } = *self;
+        let mut data = SceneData::default();
+        let mut new_warnings = Vec::new();
+        let geometry = geometry::pack(scene, pose, materials, &mut data, &mut new_warnings)?;
+        let bounds = self.geometry.bounds;
+        coincident::hide(&mut data);
+        if let TracerNode::Path(_) = options.tracer {
+            let radius = f64::from(bounds.sphere().1);
+            let both = (self.data, &mut data);
+            lights.plan_later(scene, pose, materials, &geometry, radius, both);
+        }
+        let (camera, shot) = camera::choose(
+            (scene, pose),
+            options,
+            &bounds,
+            Some(self.camera.1.focus_distance),
+            &mut data,
+            &mut new_warnings,
+        )?;
+        if materials.filter() {
+            camera::set_pixel_cone(&camera, &mut data);
+        }
+        if let Some(clip) = shot.camera.clip
+            && let Clipping::Something(warning) = clip_distances::look(clip, &shot.camera, &data)
+        {
+            new_warnings.push(warning);
+        }
+        let is_alike = geometry.objects == self.geometry.objects
+            && data.single_sided == self.data.single_sided
+            && data.alpha_tested == self.data.alpha_tested
+            && camera == *self.camera.0;
+        if !is_alike {
+            return Err(PlanError::OtherAtAnotherMoment);
+        }
+        *depth = depth.max(bounds.farthest(shot.camera.position));
+        for warning in new_warnings {
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
+        Ok(ChangedData::new(self.data, data, &SAME))
+    }
+
+    /// What of the scene moves.
+    fn sources(&self, later: &[ChangedData]) -> Vec<String> {
+        let scene = self.scene;
+        let mut sources = Vec::new();
+        let mut seen = HashSet::new();
+        let mut add = |source: String| {
+            if seen.insert(source.clone()) {
+                sources.push(source);
+            }
+        };
+        for (index, first) in scene.instances.iter().enumerate() {
+            let is_seen = self.materials.planned[scene.meshes[first.mesh].material].is_some();
+            let moves = |pose: Pose<'_>| pose.instances[index] != *first;
+            if is_seen && scene.poses().any(moves) {
+                add(format!("node {:?}", first.name));
+            }
+        }
+        if later.iter().any(|changed| changed.has(Buffer::Lights)) {
+            for (index, first) in scene.lights.iter().enumerate() {
+                if scene.poses().any(|pose| pose.lights[index] != *first) {
+                    add(format!("light {:?}", first.name));
+                }
+            }
+        }
+        if later.iter().any(|changed| changed.has(Buffer::Camera)) {
+            add(format!("camera {:?}", self.camera.1.camera.name));
+        }
+        sources
+    }
+}
+
+/// The box around everything, at all moments: framing cameras do not follow what moves.
+pub(super) fn set_bounds(scene: &SceneDesc, materials: &Materials, bounds: &mut Bounds) {
+    if !scene.later.is_empty() {
+        *bounds = geometry::bounds_of_poses(scene, materials);
+    }
+}
