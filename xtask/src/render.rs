@@ -84,14 +84,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         rendered: &rendered,
     };
     session.finish(&statistics);
-    if !args.render.quiet
-        && let Some(motion) = &plan.motion
-    {
-        note!(
-            "motion blur: the error is that of the mean over {} moments, whatever there is between them",
-            motion.moments.len()
-        );
-    }
+    scene::note_motion(&plan, &args.render);
     if !args.render.quiet
         && args.tier == TierArg::Auto
         && let Some(samples) = statistics.tiers.compiled_from

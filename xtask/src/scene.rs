@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use residual_frontend::cryptomatte::Manifest;
 use residual_frontend::note;
-use residual_frontend::options::SceneDefaults;
+use residual_frontend::options::{RenderArgs, SceneDefaults};
 use residual_frontend::session::Subject;
 use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
@@ -204,6 +204,18 @@ pub(crate) fn load_with_description(
         );
     }
     Ok((plan, scene, options))
+}
+
+/// Says what the stated error is of where a shutter was open.
+pub(crate) fn note_motion(plan: &Plan, args: &RenderArgs) {
+    if !args.quiet
+        && let Some(motion) = &plan.motion
+    {
+        note!(
+            "motion blur: the error is that of the mean over {} moments, whatever there is between them",
+            motion.moments.len()
+        );
+    }
 }
 
 /// What a scene suggests where the user asks for nothing.

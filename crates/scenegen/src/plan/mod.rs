@@ -112,7 +112,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let chosen = &shot.camera;
     match chosen
         .clip
-        .map(|clip| clip_distances::look(clip, chosen, &data))
+        .map(|clip| clip_distances::look(clip, chosen, &data.record(0), &data))
     {
         Some(Clipping::Something(warning)) => warnings.push(warning),
         Some(Clipping::Nothing(reason)) => dismissed.push(reason),

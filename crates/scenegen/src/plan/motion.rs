@@ -93,44 +93,36 @@ impl First<'_> {
         depth: &mut f32,
         warnings: &mut Vec<Warning>,
     ) -> Result<ChangedData, PlanError> {
-        let Self {
-            scene,
-            options,
-            materials,
-            ..
-        } = *self;
         let mut data = SceneData::default();
         let mut new_warnings = Vec::new();
-        let geometry = geometry::pack(scene, pose, materials, &mut data, &mut new_warnings)?;
-        let bounds = self.geometry.bounds;
-        coincident::hide(&mut data);
-        if let TracerNode::Path(_) = options.tracer {
-            let radius = f64::from(bounds.sphere().1);
-            let both = (self.data, &mut data);
-            lights.plan_later(scene, pose, materials, &geometry, radius, both);
+        let first = self.scene.pose(0);
+        // Where only the camera moves, its record is all that is new.
+        let only_camera = pose.instances == first.instances && pose.lights == first.lights;
+        if !only_camera {
+            self.place(pose, lights, &mut data, &mut new_warnings)?;
         }
+        let bounds = &self.geometry.bounds;
         let (camera, shot) = camera::choose(
-            (scene, pose),
-            options,
-            &bounds,
+            (self.scene, pose),
+            self.options,
+            bounds,
             Some(self.camera.1.focus_distance),
             &mut data,
             &mut new_warnings,
         )?;
-        if materials.filter() {
+        if camera != *self.camera.0 {
+            return Err(PlanError::OtherAtAnotherMoment);
+        }
+        if self.materials.filter() {
             camera::set_pixel_cone(&camera, &mut data);
         }
-        if let Some(clip) = shot.camera.clip
-            && let Clipping::Something(warning) = clip_distances::look(clip, &shot.camera, &data)
-        {
-            new_warnings.push(warning);
-        }
-        let is_alike = geometry.objects == self.geometry.objects
-            && data.single_sided == self.data.single_sided
-            && data.alpha_tested == self.data.alpha_tested
-            && camera == *self.camera.0;
-        if !is_alike {
-            return Err(PlanError::OtherAtAnotherMoment);
+        if let Some(clip) = shot.camera.clip {
+            let triangles = if only_camera { self.data } else { &data };
+            let record = data.record(0);
+            let looked = clip_distances::look(clip, &shot.camera, &record, triangles);
+            if let Clipping::Something(warning) = looked {
+                new_warnings.push(warning);
+            }
         }
         *depth = depth.max(bounds.farthest(shot.camera.position));
         for warning in new_warnings {
@@ -138,7 +130,36 @@ impl First<'_> {
                 warnings.push(warning);
             }
         }
-        Ok(ChangedData::new(self.data, data, &SAME))
+        let is_new = |buffer: &Buffer| match only_camera {
+            true => *buffer == Buffer::Camera,
+            false => !SAME.contains(buffer),
+        };
+        let same: Vec<Buffer> = Buffer::ALL.into_iter().filter(|b| !is_new(b)).collect();
+        Ok(ChangedData::new(self.data, data, &same))
+    }
+
+    /// Writes what is where in a pose: triangles and lights.
+    fn place(
+        &self,
+        pose: Pose<'_>,
+        lights: &mut PlannedLights,
+        data: &mut SceneData,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<(), PlanError> {
+        let (scene, materials) = (self.scene, self.materials);
+        let geometry = geometry::pack(scene, pose, materials, data, warnings)?;
+        coincident::hide(data);
+        if let TracerNode::Path(_) = self.options.tracer {
+            let radius = f64::from(self.geometry.bounds.sphere().1);
+            lights.plan_later(scene, pose, materials, &geometry, radius, (self.data, data));
+        }
+        let is_alike = geometry.objects == self.geometry.objects
+            && data.single_sided == self.data.single_sided
+            && data.alpha_tested == self.data.alpha_tested;
+        match is_alike {
+            true => Ok(()),
+            false => Err(PlanError::OtherAtAnotherMoment),
+        }
     }
 
     /// What of the scene moves.
