@@ -6,8 +6,8 @@ use glam::{Vec2, Vec3, Vec4};
 use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{
     AlphaMode, Attenuation, ColorInput, EnvironmentDesc, Filter, MaterialDesc, MeshDesc,
-    MetallicRoughness, NormalMap, PhongSurface, PoseDesc, Projection, PunctualKind, ScalarInput, Scattering,
-    SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
+    MetallicRoughness, NormalMap, PhongSurface, PoseDesc, Projection, PunctualKind, ScalarInput,
+    Scattering, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::plan::{

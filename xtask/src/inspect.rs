@@ -17,7 +17,8 @@ use crate::time::Exposure;
 use crate::{prices, scene};
 
 pub(crate) fn run(args: &InspectArgs) -> Result<()> {
-    let (plan, description, options) = scene::load_with_description(&args.scene, Exposure::default())?;
+    let (plan, description, options) =
+        scene::load_with_description(&args.scene, Exposure::default())?;
     let effects = Effects::of(&plan);
     let prices = match args.measure {
         true => Some(measure(&plan, &description, &options, args)?),

@@ -129,7 +129,10 @@ impl TimeArgs {
                     ShutterPositionArg::End => 1.0,
                 };
         // No more than there are samples.
-        let most = exposure.samples.unwrap_or(DEFAULT_MOMENTS).clamp(2, DEFAULT_MOMENTS);
+        let most = exposure
+            .samples
+            .unwrap_or(DEFAULT_MOMENTS)
+            .clamp(2, DEFAULT_MOMENTS);
         let count = self.shutter_moments.unwrap_or(most.next_power_of_two());
         let moments = Moments::new(count, exposure.seed);
         let times = moments.iter().flat_map(Moments::times);
@@ -163,7 +166,9 @@ mod tests {
         ] {
             assert_eq!(text.parse(), Ok(shutter), "{text}");
         }
-        for wrong in ["-1", "nan", "inf", "1/0", "0/0s", "deg", "s", "half", "-1/50s", ""] {
+        for wrong in [
+            "-1", "nan", "inf", "1/0", "0/0s", "deg", "s", "half", "-1/50s", "",
+        ] {
             assert!(wrong.parse::<Shutter>().is_err(), "{wrong}");
         }
     }
@@ -179,16 +184,30 @@ mod tests {
     #[test]
     fn the_shutter_is_open_around_the_frame() {
         let around = |position: &str, samples| {
-            let arguments = ["--frame", "12", "--shutter", "0.5", "--shutter-position", position];
+            let arguments = [
+                "--frame",
+                "12",
+                "--shutter",
+                "0.5",
+                "--shutter-position",
+                position,
+            ];
             time(&arguments).moments(Exposure { seed: 3, samples })
         };
-        for (position, opens) in [("start", 0.5), ("center", 0.5 - 0.25 / 24.0), ("end", 0.5 - 0.5 / 24.0)] {
+        for (position, opens) in [
+            ("start", 0.5),
+            ("center", 0.5 - 0.25 / 24.0),
+            ("end", 0.5 - 0.5 / 24.0),
+        ] {
             let times = around(position, None);
             assert_eq!(times.len(), 16);
             for (k, time) in times.iter().enumerate() {
                 let share = (time - opens) / (0.5 / 24.0) * 16.0;
                 let k = k as f64;
-                assert!(k <= share + 1e-9 && share < k + 1.0 + 1e-9, "{position}: {times:?}");
+                assert!(
+                    k <= share + 1e-9 && share < k + 1.0 + 1e-9,
+                    "{position}: {times:?}"
+                );
             }
         }
         assert_eq!(around("center", Some(5)).len(), 8);

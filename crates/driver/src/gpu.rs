@@ -217,12 +217,7 @@ impl<'a> GpuPasses<'a> {
     }
 
     /// The second set of samples.
-    fn second(
-        &self,
-        tiles: Vec<(SampleSet, &mut FilmTile)>,
-        pose: usize,
-        pass: Pass,
-    ) -> Counters {
+    fn second(&self, tiles: Vec<(SampleSet, &mut FilmTile)>, pose: usize, pass: Pass) -> Counters {
         let (renderer, scene) = (&self.interpreter, &self.driver.poses.view(pose));
         let tiles = tiles.into_iter();
         let work = tiles.map(|(set, tile)| TilePass { set, pass, tile });

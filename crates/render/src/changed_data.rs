@@ -105,7 +105,10 @@ mod tests {
             buffers.get(Buffer::Triangles),
             expected.buffer(Buffer::Triangles)
         );
-        assert_eq!(changed.memory_bytes(), 4 * buffers.get(Buffer::Triangles).len());
+        assert_eq!(
+            changed.memory_bytes(),
+            4 * buffers.get(Buffer::Triangles).len()
+        );
     }
 
     #[test]

@@ -31,9 +31,18 @@ fn each_moment_has_its_pose_and_all_share_the_mesh() {
     let mut gltf = Gltf::square();
     gltf.json["nodes"] = json!([{ "name": "moving", "mesh": 0 }, { "name": "still", "mesh": 0 }]);
     gltf.json["scenes"][0]["nodes"] = json!([0, 1]);
-    animate(&mut gltf, 0, "translation", "LINEAR", &[[0.0; 3], [8.0, 0.0, 0.0]]);
+    animate(
+        &mut gltf,
+        0,
+        "translation",
+        "LINEAR",
+        &[[0.0; 3], [8.0, 0.0, 0.0]],
+    );
     let scene = open(&gltf, &[0.125, 0.25, 0.5, 1.5]).unwrap();
-    assert_eq!((scene.meshes.len(), scene.moments.as_slice()), (1, &[0, 1, 2, 3][..]));
+    assert_eq!(
+        (scene.meshes.len(), scene.moments.as_slice()),
+        (1, &[0, 1, 2, 3][..])
+    );
     let places: Vec<f32> = scene
         .poses()
         .map(|pose| {
@@ -48,7 +57,13 @@ fn each_moment_has_its_pose_and_all_share_the_mesh() {
 #[test]
 fn still_scenes_have_one_pose() {
     let mut gltf = Gltf::square();
-    animate(&mut gltf, 0, "translation", "LINEAR", &[[0.0; 3], [8.0, 0.0, 0.0]]);
+    animate(
+        &mut gltf,
+        0,
+        "translation",
+        "LINEAR",
+        &[[0.0; 3], [8.0, 0.0, 0.0]],
+    );
     let scene = open(&gltf, &[2.0, 3.0, 4.0, 5.0]).unwrap();
     assert!(scene.later.is_empty() && scene.moments.is_empty());
     assert_eq!(scene.instances[0].transform.translation.x, 8.0);

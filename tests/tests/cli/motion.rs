@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use super::{fails, good, render, run, statistics, stderr, workplace};
 
 /// A folder with `moving.gltf`: a triangle that moves to the right within a second.
-fn moving() -> TempDir {
+pub(crate) fn moving() -> TempDir {
     let folder = workplace();
     let corners = [[-1.0_f32, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
     let keys = [[0.0_f32; 3], [1.0, 0.0, 0.0]];
@@ -16,9 +16,7 @@ fn moving() -> TempDir {
     let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
     fs::write(folder.path().join("moving.bin"), &bytes).unwrap();
     let view = |start: usize, length: usize| json!({ "buffer": 0, "byteOffset": 4 * start, "byteLength": 4 * length });
-    let accessor = |view: usize, kind: &str, count: usize| {
-        json!({ "bufferView": view, "componentType": 5126, "type": kind, "count": count })
-    };
+    let accessor = |view: usize, kind: &str, count: usize| json!({ "bufferView": view, "componentType": 5126, "type": kind, "count": count });
     let scene = json!({
         "asset": { "version": "2.0" },
         "scene": 0,
@@ -49,10 +47,16 @@ fn an_open_shutter_is_an_effect_with_its_callers() {
     assert_eq!(row["called_for_by"], json!(["node \"wing\""]));
     for closed in [&["--frame", "12"][..], &["--frame", "12", "--shutter", "0"]] {
         let row = inspect(closed);
-        assert_eq!((&row["in"], &row["changes_nothing"]), (&json!(false), &json!([])));
+        assert_eq!(
+            (&row["in"], &row["changes_nothing"]),
+            (&json!(false), &json!([]))
+        );
     }
     let row = inspect(&["--time-code", "5", "--shutter", "0.1s"]);
-    assert_eq!((&row["in"], row["changes_nothing"].as_array().map(Vec::len)), (&json!(false), Some(1)));
+    assert_eq!(
+        (&row["in"], row["changes_nothing"].as_array().map(Vec::len)),
+        (&json!(false), Some(1))
+    );
 }
 
 #[test]
@@ -64,7 +68,10 @@ fn a_closed_shutter_changes_no_bit_and_an_open_one_does() {
     };
     picture("plain.png", &[]);
     picture("closed.png", &["--shutter", "0"]);
-    let message = picture("open.png", &["--shutter", "24", "--adaptive", "--spp", "32"]);
+    let message = picture(
+        "open.png",
+        &["--shutter", "24", "--adaptive", "--spp", "32"],
+    );
     assert!(message.contains("16 moments"), "{message}");
     let same = |other: &str| {
         let args = ["compare", "plain.png", other, "--max-relmse", "0"];
@@ -80,7 +87,10 @@ fn where_nothing_moves_it_is_said() {
         &folder,
         &["moving.gltf", "--time-code", "5", "--shutter", "0.1s"],
     )));
-    assert!(message.contains("--shutter: nothing that is seen moves"), "{message}");
+    assert!(
+        message.contains("--shutter: nothing that is seen moves"),
+        "{message}"
+    );
     assert!(!message.contains("motion blur"), "{message}");
     let message = stderr(&good(render(
         &folder,
@@ -94,6 +104,15 @@ fn where_nothing_moves_it_is_said() {
 #[test]
 fn programs_have_one_pose() {
     let folder = moving();
-    let args = ["build", "moving.gltf", "--frame", "12", "--shutter", "0.5", "-o", "program"];
+    let args = [
+        "build",
+        "moving.gltf",
+        "--frame",
+        "12",
+        "--shutter",
+        "0.5",
+        "-o",
+        "program",
+    ];
     fails(&run(&folder, &args), &["--shutter", "cargo xtask render"]);
 }

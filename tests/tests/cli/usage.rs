@@ -30,7 +30,14 @@ fn bad_usage_ends_in_status_2() {
         &["render", "cameras.gltf", "--shutter", "0.5"],
         &["render", "cameras.gltf", "--frame", "1", "--shutter", "-1"],
         &["render", "cameras.gltf", "--frame", "1", "--shutter", "nan"],
-        &["render", "cameras.gltf", "--frame", "1", "--shutter-moments", "8"],
+        &[
+            "render",
+            "cameras.gltf",
+            "--frame",
+            "1",
+            "--shutter-moments",
+            "8",
+        ],
         &[
             "render",
             "cameras.gltf",

@@ -99,7 +99,12 @@ impl File {
     }
 
     /// The mesh of an upright rectangle, of one of the materials.
-    pub(crate) fn rectangle(&mut self, [x0, x1]: [f32; 2], [y0, y1]: [f32; 2], material: u32) -> usize {
+    pub(crate) fn rectangle(
+        &mut self,
+        [x0, x1]: [f32; 2],
+        [y0, y1]: [f32; 2],
+        material: u32,
+    ) -> usize {
         let corners = [
             [x0, y0, 0.0],
             [x1, y0, 0.0],

@@ -105,11 +105,17 @@ fn every_sample_is_that_of_its_moment() {
             *sum = [0, 1, 2].map(|k| sum[k] + f64::from(rgb[k]));
         }
     }
-    let expected: Vec<[f32; 3]> = sums.iter().map(|sum| sum.map(|c| (c / 8.0) as f32)).collect();
+    let expected: Vec<[f32; 3]> = sums
+        .iter()
+        .map(|sum| sum.map(|c| (c / 8.0) as f32))
+        .collect();
     // Even and odd samples are summed apart, which rounds differently.
     for (found, expected) in film.image().iter().zip(&expected) {
         for (found, expected) in found.iter().zip(expected) {
-            assert!((found - expected).abs() <= 1e-6 * expected.abs(), "{found} {expected}");
+            assert!(
+                (found - expected).abs() <= 1e-6 * expected.abs(),
+                "{found} {expected}"
+            );
         }
     }
     assert!(expected.iter().any(|rgb| rgb[0] > 0.0));
@@ -155,7 +161,11 @@ fn where_nothing_moves_there_is_one_pose() {
         let dismissed = Effects::of(&open);
         assert!(!dismissed.has(Effect::MotionBlur));
         assert_eq!(dismissed.dismissed(Effect::MotionBlur).len(), 1);
-        assert!(Effects::of(&closed).dismissed(Effect::MotionBlur).is_empty());
+        assert!(
+            Effects::of(&closed)
+                .dismissed(Effect::MotionBlur)
+                .is_empty()
+        );
     }
 }
 

@@ -134,8 +134,13 @@ fn a_cryptomatte_holds_the_part_of_the_time() {
     let layer = film.layer(Layer::CryptoObject).unwrap();
     let square = cryptomatte::id("square");
     for (pixel, [red, ..]) in film.image().into_iter().enumerate() {
-        let ranks = layer.chunks_exact(2).map(|rank| [rank[0][pixel], rank[1][pixel]]);
-        let covered: f32 = ranks.filter(|[id, _]| *id == square).map(|[_, part]| part).sum();
+        let ranks = layer
+            .chunks_exact(2)
+            .map(|rank| [rank[0][pixel], rank[1][pixel]]);
+        let covered: f32 = ranks
+            .filter(|[id, _]| *id == square)
+            .map(|[_, part]| part)
+            .sum();
         assert!((covered - red).abs() < 1e-6, "{pixel}: {covered} {red}");
     }
 }

@@ -68,8 +68,7 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let mut images = images::Images::default();
 
     let materials = materials::plan_materials(scene, options, &mut images);
-    let mut geometry =
-        geometry::pack(scene, scene.pose(0), &materials, &mut data, &mut warnings)?;
+    let mut geometry = geometry::pack(scene, scene.pose(0), &materials, &mut data, &mut warnings)?;
     motion::set_bounds(scene, &materials, &mut geometry.bounds);
     let hidden = coincident::hide(&mut data);
     // Only paths need lights.
