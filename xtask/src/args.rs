@@ -15,6 +15,7 @@ use crate::choices::{
     TargetArg, TexturesArg, TierArg, TracerArg, ViewArg,
 };
 use crate::compare::args::CompareArgs;
+use crate::numbers::finite;
 use crate::time::TimeArgs;
 
 /// Generates a renderer for a scene, and renders it.
@@ -303,26 +304,6 @@ impl FromStr for Direction {
             true => Err("zero is no direction".to_owned()),
             false => Ok(Self(numbers)),
         }
-    }
-}
-
-pub(crate) fn finite<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
-    let number: T = text
-        .parse()
-        .map_err(|_| format!("{text:?} is not a number"))?;
-    if number.into().is_finite() {
-        Ok(number)
-    } else {
-        Err("expected a finite number".to_owned())
-    }
-}
-
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    let number = finite(text)?;
-    if number > 0.0 {
-        Ok(number)
-    } else {
-        Err("expected a number greater than zero".to_owned())
     }
 }
 

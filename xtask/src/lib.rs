@@ -10,6 +10,7 @@ mod compare;
 mod delegate;
 mod emit;
 mod inspect;
+mod numbers;
 mod prices;
 mod render;
 #[cfg(feature = "wgpu")]

@@ -6,8 +6,8 @@ use clap::Args;
 use residual_frontend::options::RenderArgs;
 use residual_render::shutter::Moments;
 
-use crate::args::{finite, positive};
 use crate::choices::ShutterPositionArg;
+use crate::numbers::{finite, positive};
 
 /// Which moment is shown.
 #[derive(Args, Clone)]
@@ -152,7 +152,12 @@ mod tests {
     use clap::Parser;
 
     use super::*;
-    use crate::args::{Cli, Command};
+
+    #[derive(Parser)]
+    struct Alone {
+        #[command(flatten)]
+        time: TimeArgs,
+    }
 
     #[test]
     fn shutters_are_frames_angles_or_times() {
@@ -174,11 +179,8 @@ mod tests {
     }
 
     fn time(arguments: &[&str]) -> TimeArgs {
-        let all = ["xtask", "render", "a.gltf"].iter().chain(arguments);
-        match Cli::try_parse_from(all).expect("arguments").command {
-            Command::Render(render) => render.scene.time,
-            _ => unreachable!("a render"),
-        }
+        let all = ["alone"].iter().chain(arguments);
+        Alone::try_parse_from(all).expect("arguments").time
     }
 
     #[test]

@@ -14,7 +14,7 @@ mod poses;
 pub use inputs::{ColorInput, NormalMap, ScalarInput, TextureUse, UvTransform};
 pub use metallic_roughness::{Attenuation, MetallicRoughness, Scattering};
 pub(crate) use poses::NOTHING_MOVES;
-pub use poses::{Pose, PoseDesc};
+pub use poses::Pose;
 
 use glam::{Affine3A, DVec3, Quat, Vec2, Vec3, Vec4};
 
@@ -54,6 +54,18 @@ pub struct SceneDesc {
     pub warnings: Vec<Warning>,
     /// What is in the file and changes nothing.
     pub dismissed: Vec<Dismissed>,
+}
+
+/// Where meshes, lights and cameras are at a moment: as many of each as at the first, of the same names and kinds, and
+/// meshes with as many triangles of the same materials.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PoseDesc {
+    /// Meshes placed in the world. Those that are deformed are others at each moment.
+    pub instances: Vec<InstanceDesc>,
+    /// Punctual lights.
+    pub lights: Vec<LightDesc>,
+    /// Cameras.
+    pub cameras: Vec<CameraDesc>,
 }
 
 /// Something of the file that changes nothing in the image, so that the renderer goes without.

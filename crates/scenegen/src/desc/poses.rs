@@ -1,21 +1,9 @@
 //! Where everything is at the moments while a shutter is open.
 
-use super::{CameraDesc, InstanceDesc, LightDesc, SceneDesc};
+use super::{CameraDesc, InstanceDesc, LightDesc, PoseDesc, SceneDesc};
 
 /// Why there is no motion blur where a shutter is open.
 pub(crate) const NOTHING_MOVES: &str = "nothing that is seen moves while the shutter is open";
-
-/// Where meshes, lights and cameras are at a moment: as many of each as at the first, of the same names and kinds, and
-/// meshes with as many triangles of the same materials.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct PoseDesc {
-    /// Meshes placed in the world. Those that are deformed are others at each moment.
-    pub instances: Vec<InstanceDesc>,
-    /// Punctual lights.
-    pub lights: Vec<LightDesc>,
-    /// Cameras.
-    pub cameras: Vec<CameraDesc>,
-}
 
 /// One of a scene's poses.
 #[derive(Debug, Clone, Copy)]

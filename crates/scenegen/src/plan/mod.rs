@@ -48,10 +48,9 @@ use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
 use motion::First;
-pub use motion::Motion;
 pub use optics::{Aperture, Focus, Optics};
 pub use options::{Binding, BodyRule, CullingRule, LightPicks, PlanOptions, TextureResolution};
-pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
+pub use planned::{LightKindUse, MaterialUse, Motion, Plan, PlannedObject};
 
 use crate::desc::{
     Dismissed, EnvironmentDesc, ImageDesc, NOTHING_MOVES, SceneDesc, Texels, Warning, WarningKind,

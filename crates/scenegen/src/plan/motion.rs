@@ -18,20 +18,10 @@ use super::error::PlanError;
 use super::geometry::Geometry;
 use super::lights::PlannedLights;
 use super::options::PlanOptions;
+use super::planned::Motion;
 use super::planned_materials::Materials;
 use super::{coincident, geometry};
 use crate::desc::{Pose, SceneDesc, Warning};
-
-/// What a scene shows while the shutter is open.
-#[derive(Debug, Clone)]
-pub struct Motion {
-    /// What of the data is different in other poses than the first, whose data are the plan's.
-    pub later: Vec<ChangedData>,
-    /// For each moment, in order of time, the pose then: 0 is the first, `k` is that of `later[k - 1]`.
-    pub moments: Vec<usize>,
-    /// What moves, such as `node "Wheel"`.
-    pub sources: Vec<String>,
-}
 
 /// The first pose, planned, by which the others go.
 pub(super) struct First<'a> {

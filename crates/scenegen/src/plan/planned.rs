@@ -12,7 +12,6 @@ use residual_render::scene_data::SceneData;
 use residual_render::tracer::{MatterNode, TracerNode};
 use residual_render::triangle::ObjectRecord;
 
-use super::motion::Motion;
 use super::options::{Binding, LightPicks};
 use crate::desc::{Dismissed, Warning};
 
@@ -47,6 +46,17 @@ pub struct Plan {
     pub warnings: Vec<Warning>,
     /// What the scene has and the image does not need.
     pub dismissed: Vec<Dismissed>,
+}
+
+/// What a scene shows while the shutter is open.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    /// What of the data is different in other poses than the first, whose data are the plan's.
+    pub later: Vec<ChangedData>,
+    /// For each moment, in order of time, the pose then: 0 is the first, `k` is that of `later[k - 1]`.
+    pub moments: Vec<usize>,
+    /// What moves, such as `node "Wheel"`.
+    pub sources: Vec<String>,
 }
 
 impl Plan {
