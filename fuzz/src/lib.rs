@@ -31,7 +31,7 @@ pub fn read(scene: &str, environment: Option<&str>) {
             strength: 1.0,
             rotation_degrees: 0.0,
         }),
-        time_code: Some(0.5),
+        moments: vec![0.5, 0.75],
         ..ImportOptions::default()
     };
     let Ok(scene) = import(&FOLDER.path().join(scene), &options) else {

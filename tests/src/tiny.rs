@@ -6,8 +6,8 @@ use glam::{Vec2, Vec3, Vec4};
 use residual_render::sampler::AnySampler;
 use residual_scenegen::desc::{
     AlphaMode, Attenuation, ColorInput, EnvironmentDesc, Filter, MaterialDesc, MeshDesc,
-    MetallicRoughness, NormalMap, PhongSurface, Projection, PunctualKind, ScalarInput, Scattering,
-    SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
+    MetallicRoughness, NormalMap, PhongSurface, PoseDesc, Projection, PunctualKind, ScalarInput,
+    Scattering, SceneDesc, SurfaceDesc, Texels, TextureUse, Wrap,
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::plan::{
@@ -1050,7 +1050,16 @@ fn views() -> Vec<Tiny> {
         change(&mut tiny.options);
         tiny
     };
+    let mut moving = scene(gray(), corner());
+    moving.later.push(PoseDesc {
+        instances: moving.instances.clone(),
+        lights: moving.lights.clone(),
+        cameras: moving.cameras.clone(),
+    });
+    moving.moments = vec![0, 1];
+    moving.instances[0].transform.translation.z += 0.1;
     vec![
+        Tiny::new("motion_blur", &[Effect::MotionBlur], &[], moving),
         Tiny::new(
             "orthographic_camera",
             &[Effect::OrthographicCamera],

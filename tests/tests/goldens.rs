@@ -68,6 +68,7 @@ goldens! {
     mipmaps
     mirror_wrap
     mixed_metal
+    motion_blur
     nearest_filter
     normal_map
     odd_names

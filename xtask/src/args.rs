@@ -15,6 +15,8 @@ use crate::choices::{
     SpecializeArg, StudioArg, TargetArg, TexturesArg, TierArg, TracerArg, ViewArg,
 };
 use crate::compare::args::CompareArgs;
+use crate::numbers::finite;
+use crate::time::TimeArgs;
 
 /// Generates a renderer for a scene, and renders it.
 #[derive(Parser)]
@@ -87,18 +89,8 @@ pub(crate) struct SceneArgs {
     /// Show this set of a glTF file's materials (KHR_materials_variants)
     #[arg(long, value_name = "NAME")]
     pub(crate) variant: Option<String>,
-    /// Show this moment of a glTF file's animations; without it, the pose in which the file stands
-    #[arg(long, value_name = "SECONDS", group = "moment", allow_negative_numbers = true, value_parser = finite::<f64>)]
-    pub(crate) time_code: Option<f64>,
-    /// The same by the number of a frame, which --fps makes a time
-    #[arg(long, value_name = "N", group = "moment", allow_negative_numbers = true, value_parser = finite::<f64>)]
-    pub(crate) frame: Option<f64>,
-    /// Frames a second, of which glTF files say nothing; Blender's default is 24
-    #[arg(long, value_name = "X", default_value_t = 24.0, requires = "frame", value_parser = positive)]
-    pub(crate) fps: f64,
-    /// Show only this animation of a glTF file
-    #[arg(long, value_name = "NAME|INDEX", requires = "moment")]
-    pub(crate) animation: Option<String>,
+    #[command(flatten)]
+    pub(crate) time: TimeArgs,
     /// Fail where the scene cannot be rendered faithfully, instead of warning
     #[arg(long)]
     pub(crate) strict: bool,
@@ -320,26 +312,6 @@ impl FromStr for Direction {
             true => Err("zero is no direction".to_owned()),
             false => Ok(Self(numbers)),
         }
-    }
-}
-
-fn finite<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
-    let number: T = text
-        .parse()
-        .map_err(|_| format!("{text:?} is not a number"))?;
-    if number.into().is_finite() {
-        Ok(number)
-    } else {
-        Err("expected a finite number".to_owned())
-    }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let number = finite(text)?;
-    if number > 0.0 {
-        Ok(number)
-    } else {
-        Err("expected a number greater than zero".to_owned())
     }
 }
 

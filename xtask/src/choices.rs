@@ -22,6 +22,16 @@ pub(crate) enum StudioArg {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ShutterPositionArg {
+    /// It opens at the moment
+    Start,
+    /// The moment is in the middle
+    Center,
+    /// It closes at the moment
+    End,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SamplerArg {
     /// Owen-scrambled Sobol points
     Sobol,

@@ -11,9 +11,10 @@ use residual_scenegen::emit::rust;
 use crate::args::EmitArgs;
 use crate::choices::TargetArg;
 use crate::scene;
+use crate::time::Exposure;
 
 pub(crate) fn run(args: &EmitArgs) -> Result<()> {
-    let (plan, _) = scene::load(&args.scene)?;
+    let (plan, _) = scene::load(&args.scene, Exposure::default())?;
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let (text, extension) = match args.target {
         TargetArg::Rust => (rust::module(&plan, &lanes_name(lanes)), "rs"),

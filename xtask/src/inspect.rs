@@ -13,10 +13,12 @@ use serde_json::{Map, Value, json};
 
 use crate::args::InspectArgs;
 use crate::choices::TierArg;
+use crate::time::Exposure;
 use crate::{prices, scene};
 
 pub(crate) fn run(args: &InspectArgs) -> Result<()> {
-    let (plan, description, options) = scene::load_with_description(&args.scene)?;
+    let (plan, description, options) =
+        scene::load_with_description(&args.scene, Exposure::default())?;
     let effects = Effects::of(&plan);
     let prices = match args.measure {
         true => Some(measure(&plan, &description, &options, args)?),
@@ -137,7 +139,7 @@ fn light_count(plan: &Plan) -> usize {
 }
 
 fn memory_mib(plan: &Plan) -> f64 {
-    mib(plan.data.memory_bytes())
+    mib(plan.memory_bytes())
 }
 
 fn print(plan: &Plan, effects: &Effects) {

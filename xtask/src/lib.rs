@@ -10,11 +10,13 @@ mod compare;
 mod delegate;
 mod emit;
 mod inspect;
+mod numbers;
 mod prices;
 mod render;
 #[cfg(feature = "wgpu")]
 mod render_wgpu;
 mod scene;
+mod time;
 
 use std::process::ExitCode;
 

@@ -1,19 +1,18 @@
 //! `cargo xtask render` on the processor.
 
-use std::convert::Infallible;
-use std::time::{Duration, Instant};
-
 use anyhow::{Context, Result, ensure};
-use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView};
+use residual_device_cpu::{CpuDevice, LaneCount};
+use residual_driver::poses::Poses;
 use residual_driver::tiers::{Ledger, Tiers};
-use residual_frontend::hierarchy_quality;
 use residual_frontend::note;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{DeviceReport, Preparation, Statistics};
+use std::convert::Infallible;
 
 use crate::args::RenderArgs;
 use crate::choices::{SpecializeArg, TierArg};
 use crate::scene;
+use crate::time::Exposure;
 
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     ensure!(
@@ -25,7 +24,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         args.scene.scene.file_stem().unwrap_or_default(),
         args.scene.layers(),
     )?;
-    let (plan, load) = scene::load(&args.scene)?;
+    let (plan, load) = scene::load(&args.scene, Exposure::of(&args.render))?;
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let device = CpuDevice::new(args.render.threads).context("starting threads")?;
     let options = args
@@ -39,14 +38,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let manifests = scene::manifests(&plan);
     let tiers = Tiers::new(&plan, lanes);
     let ledger = Ledger::default();
-    let mut bvh_time = Duration::ZERO;
-    let (rendered, bvh_bytes) = std::thread::scope(|scope| {
+    let poses = Poses::new(&plan, LaneCount::native(), options.seed);
+    let rendered = std::thread::scope(|scope| {
         // Compilation runs beside the building of the hierarchy and, with `auto`, beside rendering.
         let compilation = (tier != TierArg::Interpreted).then(|| scope.spawn(|| tiers.compile()));
-        let bvh_start = Instant::now();
-        let quality = hierarchy_quality(plan.data.triangle_count());
-        let bvh = AnyBvh::build(&plan.data, LaneCount::native(), quality);
-        bvh_time = bvh_start.elapsed();
+        poses.hierarchy(poses.pose_of(0));
         if tier == TierArg::Specialized
             && let Some(compilation) = compilation
         {
@@ -55,26 +51,27 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
                 .expect_compiled()
                 .context("--tier interpreted renders without a compiler")?;
         }
-        let view = SceneView {
-            buffers: plan.data.buffers(),
-            traversal: &bvh,
-        };
+        if plan.motion.is_some() {
+            scope.spawn(|| poses.build_ahead());
+        }
         let rendered = session.render(
             scene::subject(&plan, &manifests),
             &options,
             |film, pass| {
                 let renderer = tiers.choose(&ledger);
-                Ok::<_, Infallible>(device.pass(renderer, &view, &options, film, pass))
+                Ok::<_, Infallible>(poses.pass(&device, renderer, &options, film, pass))
             },
             |progress| ledger.add(progress),
         );
         tiers.end();
-        Ok::<_, anyhow::Error>((rendered?, bvh.memory_bytes()))
+        poses.end();
+        rendered
     })?;
 
     if let Some(error) = tiers.failure() {
         note!("warning: the renderer could not be compiled; it was interpreted instead: {error:#}");
     }
+    let (bvh_time, bvh_bytes) = poses.built();
     let statistics = Statistics {
         scene: &scene::summary(&plan),
         preparation: Preparation {
@@ -91,6 +88,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         rendered: &rendered,
     };
     session.finish(&statistics);
+    scene::note_motion(&plan, &args.render);
     if !args.render.quiet
         && args.tier == TierArg::Auto
         && let Some(samples) = statistics.tiers.compiled_from

@@ -1,12 +1,12 @@
 //! `cargo xtask render --device wgpu`, and `cargo xtask adapters`.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
-use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount};
+use residual_device_cpu::{CpuDevice, LaneCount};
 use residual_device_wgpu::{Arithmetic, Dialect, Gpu, Mapping, Mode, Question, list_adapters};
 use residual_driver::gpu::{GpuDriver, GpuPasses, arithmetic};
-use residual_frontend::hierarchy_quality;
+use residual_driver::poses::Poses;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{DeviceReport, Preparation, Statistics, TierReport};
 use residual_frontend::{note, out};
@@ -14,6 +14,7 @@ use residual_frontend::{note, out};
 use crate::args::RenderArgs;
 use crate::choices::{MappingArg, TierArg};
 use crate::scene;
+use crate::time::Exposure;
 
 /// Renders on a GPU.
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
@@ -49,26 +50,27 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             gpu.adapter.name
         );
     }
-    let (plan, load) = scene::load(&args.scene)?;
+    let (plan, load) = scene::load(&args.scene, Exposure::of(&args.render))?;
     let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let cpu = CpuDevice::new(args.render.threads).context("starting threads")?;
     let options = args
         .render
         .render_options(args.scene.size.0, scene::defaults(&plan));
-    let bvh_start = Instant::now();
-    let quality = hierarchy_quality(plan.data.triangle_count());
-    let bvh = AnyBvh::build(&plan.data, LaneCount::Four, quality);
-    let bvh_time = bvh_start.elapsed();
+    let poses = Poses::new(&plan, LaneCount::Four, options.seed);
+    poses.hierarchy(0);
     let mapping = match args.mapping {
         MappingArg::Wavefront => Mapping::Wavefront,
         MappingArg::Megakernel => Mapping::Megakernel,
     };
     let manifests = scene::manifests(&plan);
-    let driver = GpuDriver::new(&gpu, probe, &plan, &bvh, mapping);
+    let driver = GpuDriver::new(&gpu, probe, &plan, &poses, mapping);
     let (rendered, report) = std::thread::scope(|scope| {
         let compilation = scope.spawn(|| driver.compile(options.size));
         if args.tier == TierArg::Specialized && compilation.join().is_err() {
             bail!("compiling kernels ended early");
+        }
+        if plan.motion.is_some() {
+            scope.spawn(|| poses.build_ahead());
         }
         let mut passes = GpuPasses::new(&driver, &cpu, lanes, &options);
         let rendered = session.render(
@@ -76,9 +78,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
             &options,
             |film, pass| passes.pass(film, pass),
             |_| (),
-        )?;
-        Ok((rendered, passes.report()))
+        );
+        poses.end();
+        Ok((rendered?, passes.report()))
     })?;
+    let (bvh_time, bvh_bytes) = poses.built();
     let statistics = Statistics {
         scene: &scene::summary(&plan),
         preparation: Preparation {
@@ -98,10 +102,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         device: DeviceReport::Wgpu(report),
         threads: cpu.threads(),
         lanes: lanes.count(),
-        bvh_bytes: bvh.memory_bytes(),
+        bvh_bytes,
         rendered: &rendered,
     };
     session.finish(&statistics);
+    scene::note_motion(&plan, &args.render);
     Ok(())
 }
 

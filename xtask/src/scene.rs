@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use residual_frontend::cryptomatte::Manifest;
 use residual_frontend::note;
-use residual_frontend::options::SceneDefaults;
+use residual_frontend::options::{RenderArgs, SceneDefaults};
 use residual_frontend::session::Subject;
 use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
@@ -21,6 +21,7 @@ use crate::args::SceneArgs;
 use crate::choices::{
     CullingArg, LightPlacesArg, LightsArg, SamplerArg, SpecializeArg, StudioArg, TexturesArg,
 };
+use crate::time::Exposure;
 
 /// What statistics say about a planned scene.
 pub(crate) fn summary(plan: &Plan) -> SceneSummary {
@@ -29,7 +30,7 @@ pub(crate) fn summary(plan: &Plan) -> SceneSummary {
         triangles: plan.data.triangle_count(),
         programs: plan.structure.programs.len(),
         effects: Effects::of(plan).iter().map(|e| e.to_string()).collect(),
-        bytes: plan.data.memory_bytes(),
+        bytes: plan.memory_bytes(),
         is_bounded: plan.structure.tracer.is_bounded(),
     }
 }
@@ -54,7 +55,7 @@ pub(crate) fn subject<'a>(plan: &'a Plan, manifests: &'a [Manifest]) -> Subject<
 }
 
 /// Reads the scene, and says how it is to be planned.
-fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
+fn read(args: &SceneArgs, exposure: Exposure) -> Result<(SceneDesc, PlanOptions)> {
     let environment = args.env.as_ref().map(|path| EnvironmentOptions {
         path: path.clone(),
         strength: args.env_strength,
@@ -65,8 +66,9 @@ fn read(args: &SceneArgs) -> Result<(SceneDesc, PlanOptions)> {
         &ImportOptions {
             environment,
             variant: args.variant.clone(),
-            animation: args.animation.clone(),
-            time_code: args.time_code.or(args.frame.map(|frame| frame / args.fps)),
+            animation: args.time.animation.clone(),
+            time_code: args.time.moment(),
+            moments: args.time.moments(exposure),
             strict: args.strict,
         },
     )?;
@@ -167,17 +169,27 @@ fn set_light_sizes(args: &SceneArgs, scene: &mut SceneDesc) {
     }
 }
 
-/// Reads and plans the scene; warnings go to standard error.
-pub(crate) fn load(args: &SceneArgs) -> Result<(Plan, Duration)> {
+/// Reads and plans the scene; warnings go to standard error. Without moments to choose, the exposure is the default.
+pub(crate) fn load(args: &SceneArgs, exposure: Exposure) -> Result<(Plan, Duration)> {
     let start = Instant::now();
-    let (plan, ..) = load_with_description(args)?;
+    let (plan, ..) = load_with_description(args, exposure)?;
     Ok((plan, start.elapsed()))
 }
 
 /// [`load`] with what the plan was made from.
-pub(crate) fn load_with_description(args: &SceneArgs) -> Result<(Plan, SceneDesc, PlanOptions)> {
-    let (scene, options) = read(args)?;
-    let plan = plan(&scene, &options).with_context(|| args.scene.display().to_string())?;
+pub(crate) fn load_with_description(
+    args: &SceneArgs,
+    exposure: Exposure,
+) -> Result<(Plan, SceneDesc, PlanOptions)> {
+    let (scene, options) = read(args, exposure)?;
+    let mut plan = plan(&scene, &options).with_context(|| args.scene.display().to_string())?;
+    if args.time.open_for() > 0.0 && plan.motion.is_none() {
+        plan.warnings.push(Warning {
+            kind: WarningKind::Unused,
+            place: "--shutter".to_owned(),
+            message: "nothing that is seen moves while the shutter is open".to_owned(),
+        });
+    }
     for warning in scene.warnings.iter().chain(&plan.warnings) {
         note!(
             "warning: {}: {}: {}",
@@ -198,6 +210,18 @@ pub(crate) fn load_with_description(args: &SceneArgs) -> Result<(Plan, SceneDesc
         );
     }
     Ok((plan, scene, options))
+}
+
+/// Says what the stated error is of where a shutter was open.
+pub(crate) fn note_motion(plan: &Plan, args: &RenderArgs) {
+    if !args.quiet
+        && let Some(motion) = &plan.motion
+    {
+        note!(
+            "motion blur: the error is that of the mean over {} moments, whatever there is between them",
+            motion.moments.len()
+        );
+    }
 }
 
 /// What a scene suggests where the user asks for nothing.

@@ -118,6 +118,49 @@ impl CpuDevice {
         (splats, counters)
     }
 
+    /// Adds a pass of samples of which each sees another pose of the scene: `pose_of` says which one, and `views` has them. What
+    /// sees the same pose is rendered together; samples of a pixel are added in their order.
+    ///
+    /// # Panics
+    /// If the film has other layers.
+    pub fn pass_in_poses<'v>(
+        &self,
+        renderer: &dyn TileRenderer,
+        pose_of: impl Fn(u32) -> usize,
+        views: impl Fn(usize) -> SceneView<'v>,
+        options: &RenderOptions,
+        film: &mut Film,
+        pass: Pass,
+    ) -> Counters {
+        let mut counters = Counters::default();
+        let mut left = film.tile_passes(pass);
+        loop {
+            left.retain(|tile| tile.pass.count > 0);
+            let Some(first) = left.first() else {
+                return counters;
+            };
+            let pose = pose_of(first.pass.first);
+            let now = left
+                .iter_mut()
+                .filter(|tile| pose_of(tile.pass.first) == pose)
+                .map(|tile| {
+                    let Pass { first, count } = tile.pass;
+                    let same = (first..first + count).take_while(|&sample| pose_of(sample) == pose);
+                    let same = same.count() as u32;
+                    tile.pass = Pass {
+                        first: first + same,
+                        count: count - same,
+                    };
+                    TilePass {
+                        set: tile.set,
+                        pass: Pass { first, count: same },
+                        tile: &mut *tile.tile,
+                    }
+                });
+            counters += self.tiles(renderer, &views(pose), options, now.collect());
+        }
+    }
+
     /// Adds passes to a film until it has so many samples a pixel.
     pub fn render_until(
         &self,

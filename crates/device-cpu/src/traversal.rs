@@ -73,16 +73,30 @@ enum Tree {
 impl AnyBvh {
     /// Builds the hierarchy over a scene's triangles, as wide as these lanes, but at least four.
     pub fn build(data: &SceneData, width: LaneCount, quality: BuildQuality) -> Self {
-        let (positions, triangles) = (data.positions(), data.triangles());
+        Self::build_moved(data, &data.positions(), width, quality)
+    }
+
+    /// The same of triangles that are elsewhere: whose corners are at these positions, three a triangle.
+    ///
+    /// # Panics
+    /// If there are other numbers of them.
+    pub fn build_moved(
+        data: &SceneData,
+        positions: &[[f32; 3]],
+        width: LaneCount,
+        quality: BuildQuality,
+    ) -> Self {
+        let triangles = data.triangles();
+        assert_eq!(positions.len(), 3 * triangles.len(), "three a triangle");
         let sided = data.single_sided.contains(&true);
         let sides = sided.then_some(data.single_sided.as_slice());
         let tree = match width {
             LaneCount::One | LaneCount::Four => {
-                Tree::Four(build(&positions, &triangles, sides, quality))
+                Tree::Four(build(positions, &triangles, sides, quality))
             }
-            LaneCount::Eight => Tree::Eight(build(&positions, &triangles, sides, quality)),
+            LaneCount::Eight => Tree::Eight(build(positions, &triangles, sides, quality)),
             LaneCount::Sixteen => {
-                Tree::Sixteen(build_compact(&positions, &triangles, sides, quality))
+                Tree::Sixteen(build_compact(positions, &triangles, sides, quality))
             }
         };
         Self {

@@ -26,7 +26,7 @@ pub use exact::FloatControls;
 pub use gpu::{AdapterDescription, Gpu, list_adapters};
 pub use probe::{Answers, Probe, Question, Tally};
 pub use rays::RayQueries;
-pub use renderer::WgpuRenderer;
+pub use renderer::{GpuPose, WgpuRenderer};
 pub use residual_wgsl::{Arithmetic, KernelSet, Mapping};
 pub use shader::{Dialect, Mode};
 

@@ -8,7 +8,7 @@ use crate::gpu::Gpu;
 use crate::launch::Settings;
 use crate::shader::{Mode, pipeline};
 use crate::stages::Stage;
-use crate::state::{Launched, State};
+use crate::state::{Launched, Shown, State};
 
 /// The kernel.
 pub(crate) struct Megakernel(ComputePipeline);
@@ -33,7 +33,7 @@ impl Megakernel {
     pub(crate) fn launch(
         &self,
         gpu: &Gpu,
-        state: &State,
+        state: Shown<'_>,
         settings: &Settings,
         (staging, bytes): (usize, u64),
     ) -> Launched {

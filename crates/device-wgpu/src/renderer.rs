@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use residual_bvh::Bvh;
+use residual_render::domain::Buffers;
 use residual_render::film::FilmTile;
 use residual_render::layer::Layers;
 use residual_render::passes::{Counters, MAX_PASS, Pass};
@@ -20,7 +21,7 @@ use crate::megakernel::Megakernel;
 use crate::scene::Scene;
 use crate::shader::{Dialect, Mode};
 use crate::stages::{Stage, StageSeconds};
-use crate::state::{Launched, State, bytes_per_path};
+use crate::state::{Bound, Launched, Shown, State, bytes_per_path};
 use crate::wavefront::Wavefront;
 
 /// Paths under way at once: enough to fill a GPU.
@@ -35,8 +36,21 @@ pub struct WgpuRenderer<'g> {
     layers: Layers,
     cost_map: Option<CostMap>,
     slots: u32,
-    first_packet: u32,
+    first: GpuPose,
     memory: u64,
+}
+
+/// A pose of a scene on the device.
+pub struct GpuPose {
+    scene: Scene,
+    bound: Bound,
+}
+
+impl GpuPose {
+    /// Bytes of its buffers, without those that it shares.
+    pub fn memory_bytes(&self) -> u64 {
+        self.scene.bytes
+    }
 }
 
 /// Kernels of either mapping.
@@ -84,8 +98,8 @@ impl<'g> WgpuRenderer<'g> {
             Mapping::Wavefront => slots,
             Mapping::Megakernel => 1,
         };
-        let scene = Scene::new(gpu, data, bvh)?;
-        let state = State::new(gpu, &scene, kernels.queues, slots, queued, stride);
+        let scene = Scene::new(gpu, &data.buffers(), bvh, None)?;
+        let state = State::new(gpu, kernels.queues, slots, queued, stride);
         let compiled = match kernels.mapping {
             Mapping::Wavefront => Compiled::Wavefront(Wavefront::new(gpu, mode, kernels, &state)?),
             Mapping::Megakernel => {
@@ -94,6 +108,7 @@ impl<'g> WgpuRenderer<'g> {
         };
         gpu.check()?;
         let memory = scene.bytes + state.bytes;
+        let bound = state.bound(gpu, &scene);
         Ok(Self {
             gpu,
             kernels: compiled,
@@ -102,7 +117,7 @@ impl<'g> WgpuRenderer<'g> {
             layers,
             cost_map: kernels.shows_traversal.then_some(CostMap),
             slots,
-            first_packet: scene.first_packet,
+            first: GpuPose { scene, bound },
             memory,
         })
     }
@@ -123,10 +138,10 @@ impl<'g> WgpuRenderer<'g> {
         };
         let settings = self
             .places
-            .settings(&options, self.slots, self.first_packet)
+            .settings(&options, self.slots, self.first.scene.first_packet)
             .of(0, 0, self.slots.min(64));
         let mut seconds = StageSeconds::default();
-        let launched = self.launch(&settings, 0, &mut seconds)?;
+        let launched = self.launch(&self.first, &settings, 0, &mut seconds)?;
         self.state
             .collect(self.gpu, &launched, &mut seconds, |_| ())?;
         Ok(())
@@ -134,18 +149,23 @@ impl<'g> WgpuRenderer<'g> {
 
     fn launch(
         &self,
+        pose: &GpuPose,
         settings: &Settings,
         staging: usize,
         seconds: &mut StageSeconds,
     ) -> Result<Launched, Error> {
         let Self { gpu, state, .. } = self;
+        let shown = Shown {
+            state,
+            pose: &pose.bound,
+        };
         let bytes = 4 * u64::from(settings.count) * self.layers.stride() as u64;
         match &self.kernels {
             Compiled::Wavefront(kernels) => {
-                kernels.launch(gpu, state, settings, (staging, bytes), seconds)
+                kernels.launch(gpu, shown, settings, (staging, bytes), seconds)
             }
             Compiled::Megakernel(kernels) => {
-                Ok(kernels.launch(gpu, state, settings, (staging, bytes)))
+                Ok(kernels.launch(gpu, shown, settings, (staging, bytes)))
             }
         }
     }
@@ -165,13 +185,39 @@ impl<'g> WgpuRenderer<'g> {
         pass: Pass,
         options: &TracerOptions,
     ) -> Result<Counters, Error> {
+        self.pass_in(None, film, pass, options)
+    }
+
+    /// Copies another pose of the scene to the device: data of the same structure, with the same textures, and its hierarchy.
+    ///
+    /// # Errors
+    /// If it does not fit.
+    pub fn copy_pose(&self, data: &Buffers<'_>, bvh: &Bvh<4>) -> Result<GpuPose, Error> {
+        let scene = Scene::new(self.gpu, data, bvh, Some(&self.first.scene))?;
+        let bound = self.state.bound(self.gpu, &scene);
+        self.gpu.check()?;
+        Ok(GpuPose { scene, bound })
+    }
+
+    /// As [`pass`](Self::pass), of a pose of the scene; of the first where none is given.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn pass_in(
+        &self,
+        pose: Option<&GpuPose>,
+        film: &mut [FilmTile],
+        pass: Pass,
+        options: &TracerOptions,
+    ) -> Result<Counters, Error> {
+        let pose = pose.unwrap_or(&self.first);
         let mut counters = Counters::default();
         let mut seconds = StageSeconds::default();
         let mut whole = Vec::new();
         let mut before: Option<Launched> = None;
         // The processor adds the samples of one launch while the device is at the next.
-        for (index, settings) in self.launches(pass, options).enumerate() {
-            let launched = self.launch(&settings, index % 2, &mut seconds)?;
+        for (index, settings) in self.launches(pose, pass, options).enumerate() {
+            let launched = self.launch(pose, &settings, index % 2, &mut seconds)?;
             if let Some(before) = before.replace(launched) {
                 self.finish(&before, film, &mut whole, &mut counters, &mut seconds)?;
             }
@@ -190,10 +236,16 @@ impl<'g> WgpuRenderer<'g> {
     }
 
     /// The launches of a pass: of whole samples, or of parts of one sample of a large image.
-    fn launches(&self, pass: Pass, options: &TracerOptions) -> impl Iterator<Item = Settings> {
+    fn launches(
+        &self,
+        pose: &GpuPose,
+        pass: Pass,
+        options: &TracerOptions,
+    ) -> impl Iterator<Item = Settings> {
         let per_sample = self.places.count();
         let batch = (self.slots / per_sample).max(1);
-        let settings = self.places.settings(options, self.slots, self.first_packet);
+        let first_packet = pose.scene.first_packet;
+        let settings = self.places.settings(options, self.slots, first_packet);
         let slots = self.slots;
         (0..pass.count)
             .step_by(batch as usize)

@@ -1,8 +1,10 @@
 //! What kernels of every mapping share: the buffers of a scene, of the paths under way, and of their samples.
 
+use std::ops::Deref;
+
 use bytemuck::Zeroable;
 use residual_wgsl::{Binding, WORKGROUP};
-use wgpu::{BindGroup, BufferUsages, CommandEncoder, PipelineLayout};
+use wgpu::{BindGroup, BindGroupLayout, BufferUsages, CommandEncoder, PipelineLayout};
 
 use crate::bindings::Access::{Read, Uniform, Write};
 use crate::bindings::{group, layout, pipeline_layout};
@@ -29,9 +31,8 @@ pub(crate) fn bytes_per_path(stride: usize) -> u64 {
 pub(crate) struct State {
     /// Bytes of all of them, but for the scene's.
     pub(crate) bytes: u64,
-    /// Group 0 and 1 of the kernels that work on paths.
-    pub(crate) scene: BindGroup,
-    pub(crate) paths: BindGroup,
+    /// Of the groups 0 and 1 of the kernels that work on paths.
+    layouts: [BindGroupLayout; 2],
     pub(crate) work: PipelineLayout,
     /// Group 0 of those that schedule.
     pub(crate) control: BindGroup,
@@ -41,11 +42,44 @@ pub(crate) struct State {
     /// `samples[slot][channel]`.
     pub(crate) samples: wgpu::Buffer,
     settings: wgpu::Buffer,
+    paths: wgpu::Buffer,
+    shadow_rays: wgpu::Buffer,
     queues: wgpu::Buffer,
     queue_count: usize,
     pub(crate) clock: Clock,
     /// What comes back of a launch, and of the one behind it: [`Header`], timestamps, samples.
     staging: [wgpu::Buffer; 2],
+}
+
+/// The buffers of a scene, or of a pose of it, bound together with those of the paths under way.
+pub(crate) struct Bound {
+    /// Group 0 and 1 of the kernels that work on paths.
+    groups: [BindGroup; 2],
+}
+
+/// Buffers, and the pose of the scene that is rendered.
+#[derive(Clone, Copy)]
+pub(crate) struct Shown<'a> {
+    pub(crate) state: &'a State,
+    pub(crate) pose: &'a Bound,
+}
+
+impl Deref for Shown<'_> {
+    type Target = State;
+
+    fn deref(&self) -> &State {
+        self.state
+    }
+}
+
+impl Shown<'_> {
+    /// Binds what kernels on paths need.
+    pub(crate) fn bind(&self, pass: &mut wgpu::ComputePass<'_>, kernel: &wgpu::ComputePipeline) {
+        pass.set_pipeline(kernel);
+        for (index, group) in (0..).zip(&self.pose.groups) {
+            pass.set_bind_group(index, group, &[]);
+        }
+    }
 }
 
 /// Where timestamps and samples begin in what comes back.
@@ -85,7 +119,6 @@ impl State {
     /// Buffers for this many paths under way, and as many of them in queues.
     pub(crate) fn new(
         gpu: &Gpu,
-        scene: &Scene,
         queue_count: usize,
         slots: u32,
         queued: u32,
@@ -115,27 +148,17 @@ impl State {
         let scene_layout = layout(gpu, &[Read, Read, Read, Uniform]);
         let paths_layout = layout(gpu, &[Read, Write, Write, Write, Write, Uniform]);
         let control_layout = layout(gpu, &[Write, Write, Uniform]);
-        let [geometry, texels, tables] = &scene.bindings;
-        const { assert!(Binding::BASES == 3) };
-        let of_scene = [geometry, texels, tables, &scene.bases];
-        let of_paths = [
-            &scene.tree,
-            &paths,
-            &shadow_rays,
-            &queues,
-            &samples,
-            &settings,
-        ];
         Self {
             bytes,
-            scene: group(gpu, &scene_layout, &of_scene),
-            paths: group(gpu, &paths_layout, &of_paths),
             work: pipeline_layout(gpu, &[&scene_layout, &paths_layout]),
+            layouts: [scene_layout, paths_layout],
             control: group(gpu, &control_layout, &[&queues, &arguments, &settings]),
             between: pipeline_layout(gpu, &[&control_layout]),
             arguments,
             samples,
             settings,
+            paths,
+            shadow_rays,
             queues,
             queue_count,
             clock: Clock::new(gpu),
@@ -150,6 +173,28 @@ impl State {
         }
     }
 
+    /// Binds the buffers of a scene, or of a pose of it.
+    pub(crate) fn bound(&self, gpu: &Gpu, scene: &Scene) -> Bound {
+        let [geometry, texels, tables] = &scene.bindings;
+        const { assert!(Binding::BASES == 3) };
+        let of_scene = [geometry, texels, tables, &scene.bases];
+        let of_paths = [
+            &scene.tree,
+            &self.paths,
+            &self.shadow_rays,
+            &self.queues,
+            &self.samples,
+            &self.settings,
+        ];
+        let [scene_layout, paths_layout] = &self.layouts;
+        Bound {
+            groups: [
+                group(gpu, scene_layout, &of_scene),
+                group(gpu, paths_layout, &of_paths),
+            ],
+        }
+    }
+
     /// Sets everything up for a launch; returns its workgroups.
     pub(crate) fn begin(&self, gpu: &Gpu, settings: &Settings) -> u32 {
         let write = |buffer, bytes: &[u8]| gpu.queue.write_buffer(buffer, 0, bytes);
@@ -161,13 +206,6 @@ impl State {
         let arguments = [groups, 1, 1, groups, 1, 1];
         write(&self.arguments, bytemuck::cast_slice(&arguments));
         groups
-    }
-
-    /// Binds what kernels on paths need.
-    pub(crate) fn bind(&self, pass: &mut wgpu::ComputePass<'_>, kernel: &wgpu::ComputePipeline) {
-        pass.set_pipeline(kernel);
-        pass.set_bind_group(0, &self.scene, &[]);
-        pass.set_bind_group(1, &self.paths, &[]);
     }
 
     /// Submits a launch; `bytes` of its samples are to come back through one of the two staging buffers, which must not be

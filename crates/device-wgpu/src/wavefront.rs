@@ -9,7 +9,7 @@ use crate::gpu::Gpu;
 use crate::launch::Settings;
 use crate::shader::{Mode, pipeline};
 use crate::stages::{Laps, Stage, StageSeconds};
-use crate::state::{Launched, State};
+use crate::state::{Launched, Shown, State};
 
 /// Vertices of paths between two looks at whether any path is left.
 const VERTICES: u32 = 16;
@@ -62,7 +62,7 @@ impl Wavefront {
     pub(crate) fn launch(
         &self,
         gpu: &Gpu,
-        state: &State,
+        state: Shown<'_>,
         settings: &Settings,
         (staging, bytes): (usize, u64),
         seconds: &mut StageSeconds,
@@ -106,14 +106,14 @@ impl Wavefront {
     }
 
     /// One vertex of all paths.
-    fn step(&self, pass: &mut ComputePass<'_>, state: &State, laps: &mut Laps, vertex: u32) {
+    fn step(&self, pass: &mut ComputePass<'_>, state: Shown<'_>, laps: &mut Laps, vertex: u32) {
         self.trace(pass, state);
         let traced = match vertex {
             0 => Stage::TraceCamera,
             _ => Stage::TraceOn,
         };
         state.clock.lap(pass, laps, traced);
-        between(pass, state, &self.plan);
+        between(pass, &state, &self.plan);
         state.bind(pass, &self.scatter);
         pass.dispatch_workgroups_indirect(&state.arguments, 12);
         state.clock.lap(pass, laps, Stage::Sort);
@@ -121,11 +121,11 @@ impl Wavefront {
             state.bind(pass, shade);
             pass.dispatch_workgroups_indirect(&state.arguments, 12 * (2 + *queue as u64));
         }
-        between(pass, state, &self.turn);
+        between(pass, &state, &self.turn);
         state.clock.lap(pass, laps, Stage::Shade);
     }
 
-    fn trace(&self, pass: &mut ComputePass<'_>, state: &State) {
+    fn trace(&self, pass: &mut ComputePass<'_>, state: Shown<'_>) {
         state.bind(pass, &self.trace);
         pass.dispatch_workgroups_indirect(&state.arguments, 0);
     }

@@ -1,17 +1,22 @@
 //! A render on a GPU: on the processor until the kernels are compiled, then on the device, once its first samples have been
 //! compared with the processor's.
 
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
-use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
-use residual_device_wgpu::{Dialect, FloatControls, Gpu, Mapping, Mode, Probe, WgpuRenderer};
+use residual_device_cpu::{CpuDevice, Interpreter, LaneCount};
+use residual_device_wgpu::{
+    Dialect, FloatControls, Gpu, GpuPose, Mapping, Mode, Probe, WgpuRenderer,
+};
 use residual_frontend::stats::WgpuReport;
 use residual_render::film::{Film, FilmTile, SampleSet, TILE_SIZE, TilePass};
 use residual_render::passes::{Counters, Pass, RenderOptions};
 use residual_render::tracer::{DebugView, TracerNode};
 use residual_scenegen::plan::Plan;
+
+use crate::poses::Poses;
 
 /// Where bits may differ: the part of the pixels that may be off by more than [`FAR`], for paths that take another turn.
 const MOST_FAR: f64 = 0.1;
@@ -23,7 +28,7 @@ pub struct GpuDriver<'a> {
     gpu: &'a Gpu,
     probe: Probe,
     plan: &'a Plan,
-    bvh: &'a AnyBvh,
+    poses: &'a Poses<'a>,
     mapping: Mapping,
     compiled: OnceLock<(
         Result<WgpuRenderer<'a>, residual_device_wgpu::Error>,
@@ -32,19 +37,19 @@ pub struct GpuDriver<'a> {
 }
 
 impl<'a> GpuDriver<'a> {
-    /// Nothing is compiled yet. The hierarchy is four wide.
+    /// Nothing is compiled yet. The poses' hierarchies are four wide.
     pub fn new(
         gpu: &'a Gpu,
         probe: Probe,
         plan: &'a Plan,
-        bvh: &'a AnyBvh,
+        poses: &'a Poses<'a>,
         mapping: Mapping,
     ) -> Self {
         Self {
             gpu,
             probe,
             plan,
-            bvh,
+            poses,
             mapping,
             compiled: OnceLock::new(),
         }
@@ -57,7 +62,8 @@ impl<'a> GpuDriver<'a> {
     pub fn compile(&self, size: [u32; 2]) {
         self.compiled.get_or_init(|| {
             let start = Instant::now();
-            let bvh = self.bvh.four_wide().expect("a hierarchy of four children");
+            let bvh = self.poses.hierarchy(0).four_wide();
+            let bvh = bvh.expect(FOUR_WIDE);
             let Plan {
                 structure, data, ..
             } = self.plan;
@@ -78,7 +84,8 @@ pub struct GpuPasses<'a> {
     driver: &'a GpuDriver<'a>,
     cpu: &'a CpuDevice,
     interpreter: Interpreter,
-    view: SceneView<'a>,
+    /// The poses behind the first that have been copied to the device.
+    copied: BTreeMap<usize, GpuPose>,
     options: &'a RenderOptions,
     /// The processor's first sample, and how the device's agrees with it.
     first: Option<Film>,
@@ -124,10 +131,7 @@ impl<'a> GpuPasses<'a> {
             driver,
             cpu,
             interpreter: Interpreter::new(driver.plan.structure.clone(), lanes),
-            view: SceneView {
-                buffers: driver.plan.data.buffers(),
-                traversal: driver.bvh,
-            },
+            copied: BTreeMap::new(),
             options,
             first: None,
             agreement: None,
@@ -160,16 +164,51 @@ impl<'a> GpuPasses<'a> {
             self.compare(renderer)?;
         }
         self.from.get_or_insert(pass.first);
+        let mut counters = Counters::default();
+        let mut left = pass;
+        while left.count > 0 {
+            let (pose, now) = self.driver.poses.first_of(left);
+            counters += self.in_pose(renderer, pose, film, now)?;
+            left = Pass {
+                first: now.first + now.count,
+                count: left.count - now.count,
+            };
+        }
+        Ok(counters)
+    }
+
+    /// Adds samples that see one pose, on the device.
+    fn in_pose(
+        &mut self,
+        renderer: &WgpuRenderer<'_>,
+        pose: usize,
+        film: &mut Film,
+        pass: Pass,
+    ) -> Result<Counters> {
+        self.copy(renderer, pose)?;
+        let copied = self.copied.get(&pose);
         // The second set of samples, of few pixels, is the processor's: it would leave most of a GPU idle.
         let (first, second) = film.sets_mut();
         let (of_second, of_first) = std::thread::scope(|scope| {
-            let of_second = scope.spawn(|| self.second(second, pass));
-            let of_first = renderer.pass(first, pass, &self.options.tracer(SampleSet::First));
+            let of_second = scope.spawn(|| self.second(second, pose, pass));
+            let tracer = self.options.tracer(SampleSet::First);
+            let of_first = renderer.pass_in(copied, first, pass, &tracer);
             (of_second.join().expect("no tile panicked"), of_first)
         });
         let mut counters = of_first?;
         counters.count_rays_of(&of_second);
         Ok(counters)
+    }
+
+    /// Copies a pose to the device, unless it is there, as the first always is.
+    fn copy(&mut self, renderer: &WgpuRenderer<'_>, pose: usize) -> Result<()> {
+        if pose > 0 && !self.copied.contains_key(&pose) {
+            let poses = self.driver.poses;
+            let bvh = poses.hierarchy(pose).four_wide().expect(FOUR_WIDE);
+            let copied = renderer.copy_pose(&poses.view(pose).buffers, bvh)?;
+            self.copied.insert(pose, copied);
+        }
+        Ok(())
     }
 
     /// The image is of what traversal visits, which is another matter on each device.
@@ -178,8 +217,8 @@ impl<'a> GpuPasses<'a> {
     }
 
     /// The second set of samples.
-    fn second(&self, tiles: Vec<(SampleSet, &mut FilmTile)>, pass: Pass) -> Counters {
-        let (renderer, scene) = (&self.interpreter, &self.view);
+    fn second(&self, tiles: Vec<(SampleSet, &mut FilmTile)>, pose: usize, pass: Pass) -> Counters {
+        let (renderer, scene) = (&self.interpreter, &self.driver.poses.view(pose));
         let tiles = tiles.into_iter();
         let work = tiles.map(|(set, tile)| TilePass { set, pass, tile });
         self.cpu
@@ -190,11 +229,11 @@ impl<'a> GpuPasses<'a> {
         let Self {
             cpu,
             interpreter,
-            view,
             options,
+            driver,
             ..
         } = self;
-        cpu.pass(interpreter, view, options, film, pass)
+        driver.poses.pass(cpu, interpreter, options, film, pass)
     }
 
     /// The first sample of each pixel, by both devices.
@@ -208,7 +247,10 @@ impl<'a> GpuPasses<'a> {
             film
         });
         let mut theirs = film();
-        renderer.pass(
+        let pose = self.driver.poses.pose_of(FIRST.first);
+        self.copy(renderer, pose)?;
+        renderer.pass_in(
+            self.copied.get(&pose),
             theirs.tiles_mut(),
             FIRST,
             &self.options.tracer(SampleSet::First),
@@ -249,10 +291,14 @@ impl<'a> GpuPasses<'a> {
             compile: compiled.map_or(Duration::ZERO, |(_, time)| *time),
             from: self.from,
             agreement: self.agreement.map(|a| (a.same, a.pixels)),
-            bytes: renderer.map_or(0, WgpuRenderer::memory_bytes),
+            bytes: renderer.map_or(0, WgpuRenderer::memory_bytes)
+                + self.copied.values().map(GpuPose::memory_bytes).sum::<u64>(),
         }
     }
 }
+
+/// Hierarchies for GPUs are.
+const FOUR_WIDE: &str = "a hierarchy of four children";
 
 /// The first sample of each pixel, which is also the first pass.
 const FIRST: Pass = Pass { first: 0, count: 1 };

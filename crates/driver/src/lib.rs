@@ -4,6 +4,7 @@
 //! Plan ─┬─ compile ─ cargo ─▶ library ─ cache ─▶ LoadedRenderer ─┬─ tiers ─▶ device
 //!       ├─ interpreted ──────────────────────────────────────────┤
 //!       ├─ gpu (with the feature wgpu)
+//!       ├─ poses: the data and the hierarchy of each moment while the shutter is open
 //!       └─ standalone ─ cargo ─▶ program                         └─ price (with and without each effect)
 //! ```
 //!
@@ -16,6 +17,7 @@ pub mod compile;
 mod fingerprint;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
+pub mod poses;
 pub mod price;
 pub mod standalone;
 pub mod tiers;

@@ -4,14 +4,12 @@
 //! own that all variants share: so only what an effect changes differs. Effects that are out and that other paths would
 //! have to ask about (alpha, kinds of lights) are put in, without use, and must not change the image.
 
-use std::ops::ControlFlow;
-
 use anyhow::{Context, Result};
 use residual_accuracy::{Estimate, Jackknifed, flip, relative_mse};
 use residual_device_cpu::plugin::LoadedRenderer;
-use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileRenderer};
-use residual_frontend::{hierarchy_quality, process_time};
-use residual_render::passes::{Progress, RenderOptions};
+use residual_device_cpu::{CpuDevice, Interpreter, LaneCount, TileRenderer};
+use residual_frontend::process_time;
+use residual_render::passes::RenderOptions;
 use residual_render::program::{AlphaTestNode, BsdfNode, LightNode, Program, ScalarNode};
 use residual_render::surface::Attributes;
 use residual_scenegen::ablation::{instead, without};
@@ -20,6 +18,7 @@ use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
 
 use crate::compile::compile;
+use crate::poses::Poses;
 
 /// One line of the price list.
 #[derive(Clone, Debug)]
@@ -80,15 +79,19 @@ pub enum Step {
     },
 }
 
-/// A scene that is rendered, and what came of it.
+/// A scene that is rendered.
 struct Variant {
     effect: Option<Effect>,
     /// Whether the scene calls for the effect.
     is_in: bool,
     instead: &'static str,
     plan: Plan,
-    bvh: AnyBvh,
     renderer: Renderer,
+}
+
+/// What came of its renders.
+#[derive(Default)]
+struct Renders {
     /// CPU seconds, round by round.
     seconds: Vec<f64>,
     images: Vec<Vec<[f32; 3]>>,
@@ -120,12 +123,19 @@ pub fn prices(
     measurement: &PriceOptions,
     mut report: impl FnMut(Step),
 ) -> Result<Vec<Price>> {
-    let mut variants = variants(with, scene, options, measurement.tier, &mut report)?;
+    let variants = variants(with, scene, options, measurement.tier, &mut report)?;
+    let poses = variants.iter().map(|variant| {
+        let poses = Poses::new(&variant.plan, LaneCount::native(), 0);
+        poses.build_ahead();
+        poses
+    });
+    let poses: Vec<_> = poses.collect();
+    let mut renders: Vec<_> = variants.iter().map(|_| Renders::default()).collect();
     let device = CpuDevice::new(0).context("starting threads")?;
     let count = variants.len();
     for round in 0..=measurement.rounds {
         for turn in 0..count {
-            let variant = &mut variants[(round as usize + turn) % count];
+            let index = (round as usize + turn) % count;
             let job = RenderOptions {
                 size: options.size,
                 samples: Some(measurement.samples),
@@ -134,18 +144,13 @@ pub fn prices(
                 seed: round,
                 ..RenderOptions::default()
             };
-            let view = SceneView {
-                buffers: variant.plan.data.buffers(),
-                traversal: &variant.bvh,
-            };
             let before = process_time();
-            let go_on = |_: Progress<'_>| ControlFlow::Continue(());
-            let (film, _) = device.render(|| variant.renderer.get(), &view, &job, go_on);
+            let film = poses[index].render(&device, variants[index].renderer.get(), &job);
             let used = process_time() - before;
             // The first round warms caches.
             if round > 0 {
-                variant.seconds.push(used.as_secs_f64());
-                variant.images.push(film.image());
+                renders[index].seconds.push(used.as_secs_f64());
+                renders[index].images.push(film.image());
             }
         }
         report(Step::Measured {
@@ -154,11 +159,12 @@ pub fn prices(
             renders: count,
         });
     }
-    let (with, others) = variants.split_first().expect("the scene as it is");
-    let mut prices: Vec<_> = others
-        .iter()
-        .map(|other| price(with, other, options.size[0] as usize))
-        .collect();
+    let of_variants = variants.iter().zip(&renders);
+    let width = options.size[0] as usize;
+    let prices = of_variants
+        .skip(1)
+        .map(|(other, of_other)| price(&renders[0], other, of_other, width));
+    let mut prices: Vec<_> = prices.collect();
     prices.sort_by(|a, b| b.time.median.total_cmp(&a.time.median));
     Ok(prices)
 }
@@ -207,16 +213,12 @@ fn variants(
                     Renderer::Compiled(compile(&plan, lanes)?)
                 }
             };
-            let quality = hierarchy_quality(plan.data.triangle_count());
             Ok(Variant {
                 effect,
                 is_in,
                 instead,
-                bvh: AnyBvh::build(&plan.data, lanes, quality),
                 plan,
                 renderer,
-                seconds: Vec::new(),
-                images: Vec::new(),
             })
         });
     built.collect()
@@ -267,9 +269,9 @@ fn with_unused(effect: Effect, plan: &Plan) -> Option<Plan> {
     Some(plan)
 }
 
-fn price(with: &Variant, other: &Variant, width: usize) -> Price {
-    let effect = other.effect.expect("not the scene as it is");
-    let is_in = other.is_in;
+fn price(with: &Renders, variant: &Variant, other: &Renders, width: usize) -> Price {
+    let effect = variant.effect.expect("not the scene as it is");
+    let is_in = variant.is_in;
     let saved = with.seconds.iter().zip(&other.seconds);
     let saved = saved.map(|(with, other)| match is_in {
         true => 1.0 - other / with,
@@ -284,7 +286,7 @@ fn price(with: &Variant, other: &Variant, width: usize) -> Price {
     };
     Price {
         effect,
-        instead: other.instead,
+        instead: variant.instead,
         is_in,
         time: Estimate::of(saved.collect()),
         flip: difference(&|a, b| flip(a, b, width)),

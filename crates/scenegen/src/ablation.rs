@@ -49,6 +49,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::DepthOfField => "a pinhole",
         Effect::LightTree => "picked from a table",
         Effect::SolidAngleSampling => "by area",
+        Effect::MotionBlur => "as at the first moment",
         Effect::DiffuseReflection
         | Effect::MixedLobes
         | Effect::NearestFilter
@@ -89,13 +90,13 @@ pub fn without(
         Effect::LightTree => options.light_picks = LightPicks::Mixed,
         Effect::SolidAngleSampling => options.light_places = LightPlaces::Area,
         Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => {
-            let lights = &mut scene.lights;
-            lights.retain(|light| light.size > 0.0 || light_effect(light) != effect);
+            scene.retain_lights(|light| light.size > 0.0 || light_effect(light) != effect);
         }
         Effect::SphericalPointLights => take_sizes(Effect::PointLights, &mut scene),
         Effect::SphericalSpotLights => take_sizes(Effect::SpotLights, &mut scene),
         Effect::Suns => take_sizes(Effect::DirectionalLights, &mut scene),
         Effect::Environment => scene.environment = None,
+        Effect::MotionBlur => scene.close_shutter(),
         Effect::DepthOfField => options.optics = Optics::Projection,
         _ => {
             for material in &mut scene.materials {
@@ -117,7 +118,7 @@ fn light_effect(light: &LightDesc) -> Effect {
 
 /// Takes the size of the lights that would call for an effect without it.
 fn take_sizes(effect: Effect, scene: &mut SceneDesc) {
-    let lights = scene.lights.iter_mut();
+    let lights = scene.all_lights_mut();
     for light in lights.filter(|light| light_effect(light) == effect) {
         light.size = 0.0;
     }

@@ -9,9 +9,12 @@
 
 mod inputs;
 mod metallic_roughness;
+mod poses;
 
 pub use inputs::{ColorInput, NormalMap, ScalarInput, TextureUse, UvTransform};
 pub use metallic_roughness::{Attenuation, MetallicRoughness, Scattering};
+pub(crate) use poses::NOTHING_MOVES;
+pub use poses::Pose;
 
 use glam::{Affine3A, DVec3, Quat, Vec2, Vec3, Vec4};
 
@@ -41,10 +44,28 @@ pub struct SceneDesc {
     pub cameras: Vec<CameraDesc>,
     /// Light from infinitely far away.
     pub environment: Option<EnvironmentDesc>,
+    /// Where meshes, lights and cameras are at other moments while the shutter is open; none where it is closed, or where
+    /// nothing moves meanwhile.
+    pub later: Vec<PoseDesc>,
+    /// For each moment while the shutter is open, in order of time, the [pose](SceneDesc::pose) then; none where there is one
+    /// pose only.
+    pub moments: Vec<usize>,
     /// What could not be taken over faithfully.
     pub warnings: Vec<Warning>,
     /// What is in the file and changes nothing.
     pub dismissed: Vec<Dismissed>,
+}
+
+/// Where meshes, lights and cameras are at a moment: as many of each as at the first, of the same names and kinds, and
+/// meshes with as many triangles of the same materials.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PoseDesc {
+    /// Meshes placed in the world. Those that are deformed are others at each moment.
+    pub instances: Vec<InstanceDesc>,
+    /// Punctual lights.
+    pub lights: Vec<LightDesc>,
+    /// Cameras.
+    pub cameras: Vec<CameraDesc>,
 }
 
 /// Something of the file that changes nothing in the image, so that the renderer goes without.
@@ -250,7 +271,7 @@ pub struct MeshDesc {
 }
 
 /// A mesh placed in the world.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct InstanceDesc {
     /// Name of the node, for messages.
     pub name: String,
@@ -302,7 +323,7 @@ pub enum PunctualKind {
 }
 
 /// A camera in world space. It looks along −Z of `rotation`, +Y is up.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CameraDesc {
     /// Name of the node or the camera.
     pub name: String,

@@ -6,6 +6,8 @@ use crate::desc::{
 };
 use crate::desc_inputs::MaterialInput;
 
+mod poses;
+
 /// A broken invariant.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {problem}")]
@@ -71,26 +73,7 @@ impl SceneDesc {
         for (i, mesh) in self.meshes.iter().enumerate() {
             self.check_mesh(i, mesh)?;
         }
-        for (i, instance) in self.instances.iter().enumerate() {
-            require(
-                instance.mesh < self.meshes.len(),
-                || format!("instances[{i}].mesh"),
-                "is out of range",
-            )?;
-            require(
-                instance.transform.is_finite(),
-                || format!("instances[{i}].transform"),
-                "is not finite",
-            )?;
-        }
-        self.lights
-            .iter()
-            .enumerate()
-            .try_for_each(|(i, light)| check_light(i, light))?;
-        self.cameras
-            .iter()
-            .enumerate()
-            .try_for_each(|(i, camera)| check_camera(i, camera))?;
+        self.check_poses()?;
         if let Some(environment) = &self.environment {
             let place = || "environment".to_owned();
             let image = self.images.get(environment.image);

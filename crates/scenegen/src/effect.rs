@@ -80,4 +80,5 @@ effects! {
     DepthOfField = "depth of field",
     OrthographicCamera = "orthographic camera",
     PanoramicCamera = "panoramic camera",
+    MotionBlur = "motion blur",
 }

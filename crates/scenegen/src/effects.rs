@@ -53,6 +53,10 @@ impl Effects {
         }
         let camera = format!("camera {:?}", plan.camera_name);
         effects.add(camera_effect(&structure.camera), &camera);
+        if let Some(motion) = &plan.motion {
+            let sources = motion.sources.clone();
+            effects.reasons.insert(Effect::MotionBlur, sources);
+        }
         for dismissed in &plan.dismissed {
             if let Some(effect) = dismissed.effect {
                 let reasons = effects.dismissed.entry(effect).or_default();

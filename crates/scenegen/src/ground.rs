@@ -61,16 +61,21 @@ impl SceneDesc {
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             ..MeshDesc::default()
         });
-        self.instances.push(InstanceDesc {
+        let ground = InstanceDesc {
             name: "ground".to_owned(),
             mesh: self.meshes.len() - 1,
             transform: Affine3A::IDENTITY,
-        });
+        };
+        for pose in &mut self.later {
+            pose.instances.push(ground.clone());
+        }
+        self.instances.push(ground);
     }
 
-    /// Least and greatest coordinates of what is placed in the world.
+    /// Least and greatest coordinates of what is placed in the world, at any moment.
     fn bounds(&self) -> Option<[Vec3; 2]> {
-        let points = self.instances.iter().flat_map(|instance| {
+        let instances = self.poses().flat_map(|pose| pose.instances);
+        let points = instances.flat_map(|instance| {
             let positions = self.meshes[instance.mesh].positions.iter();
             positions.map(|&position| instance.transform.transform_point3(position))
         });

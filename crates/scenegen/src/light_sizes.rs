@@ -12,7 +12,7 @@ impl LightDesc {
 impl SceneDesc {
     /// Makes spheres of this radius, in units of the scene, of all point and spot lights; at 0 they are points.
     pub fn set_light_radius(&mut self, radius: f32) {
-        let lights = self.lights.iter_mut();
+        let lights = self.all_lights_mut();
         for light in lights.filter(|light| !light.is_directional()) {
             light.size = radius;
         }
@@ -20,7 +20,7 @@ impl SceneDesc {
 
     /// Makes discs of the sky of this angular diameter, in radians, of all directional lights; at 0 they shine in one direction.
     pub fn set_sun_angle(&mut self, angle: f32) {
-        let lights = self.lights.iter_mut();
+        let lights = self.all_lights_mut();
         for light in lights.filter(|light| light.is_directional()) {
             light.size = angle;
         }

@@ -50,11 +50,12 @@ impl SceneDesc {
         /// Part of all surfaces up to which glowing details are details.
         const DETAILS: f64 = 0.25;
         let shines = |light: &LightDesc| light.intensity.into_iter().any(|c| c > 0.0);
-        if self.lights.iter().any(shines) || self.environment.is_some() {
+        let mut lights = self.poses().flat_map(|pose| pose.lights);
+        if lights.any(shines) || self.environment.is_some() {
             return false;
         }
         let (mut all, mut glowing) = (0.0, 0.0);
-        for instance in &self.instances {
+        for instance in self.poses().flat_map(|pose| pose.instances) {
             let mesh = &self.meshes[instance.mesh];
             let emission = &self.materials[mesh.material].emission;
             let glow = self.glowing_part(emission);

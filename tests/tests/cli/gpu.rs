@@ -6,6 +6,7 @@ use residual_device_wgpu::{AdapterDescription, list_adapters};
 use residual_tests::pictures::{first_difference, read_exr};
 use tempfile::TempDir;
 
+use super::motion::moving;
 use super::{fails, good, run, statistics, stderr, workplace};
 
 /// The adapter that renders by default; prints that the test is skipped where there is none.
@@ -62,6 +63,33 @@ fn gpus_render_the_processors_image() {
             let difference = first_difference(&picture("cpu.exr"), &picture("gpu.exr"));
             assert_eq!(difference, None, "{mapping}");
         }
+    }
+}
+
+/// Poses of the scene are copied to the device as samples ask for them.
+#[test]
+fn gpus_spread_samples_over_the_same_moments() {
+    if adapter().is_none() {
+        return;
+    }
+    let folder = moving();
+    let picture = |device: &[&str], mapping: &str| {
+        let job = ["render", "moving.gltf", "--frame", "12", "--shutter", "24"];
+        let look = ["--size", "20x12", "--spp", "20", "--stats", "json"];
+        let output = ["-o", "moving.exr", "--mapping", mapping];
+        let output = good(run(&folder, &[&job, &look, device, &output].concat()));
+        let gpu = statistics(&output)["gpu"].clone();
+        let pixels = read_exr(&folder.path().join("moving.exr")).unwrap().1;
+        (pixels, gpu)
+    };
+    let (expected, _) = picture(&["--tier", "interpreted"], "wavefront");
+    for mapping in ["wavefront", "megakernel"] {
+        let (pixels, gpu) = picture(&["--device", "wgpu", "--tier", "specialized"], mapping);
+        if gpu["exact"] != true {
+            println!("skipped: {}", gpu["answers"]);
+            continue;
+        }
+        assert_eq!(first_difference(&expected, &pixels), None, "{mapping}");
     }
 }
 

@@ -11,6 +11,7 @@ mod inspect;
 #[cfg(target_os = "linux")]
 mod interrupt;
 mod looks;
+mod motion;
 mod outputs;
 mod render;
 mod tiers;

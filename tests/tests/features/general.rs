@@ -160,7 +160,8 @@ fn a_renderer_for_everything_gives_the_same_bits() {
             &Effect::LightTree,
             &Effect::DepthOfField,
             &Effect::OrthographicCamera,
-            &Effect::PanoramicCamera
+            &Effect::PanoramicCamera,
+            &Effect::MotionBlur
         ]
     );
 

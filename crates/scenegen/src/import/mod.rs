@@ -55,7 +55,8 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<SceneDesc, ImportE
             if options.variant.is_some() {
                 warnings.push("variant", "OBJ files have no variants; ignored");
             }
-            if options.time_code.is_some() || options.animation.is_some() {
+            let is_timed = options.time_code.is_some() || !options.moments.is_empty();
+            if is_timed || options.animation.is_some() {
                 warnings.push("animation", "OBJ files have no animations; ignored");
             }
             obj::import(path, &mut warnings)?

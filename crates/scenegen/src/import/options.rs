@@ -13,6 +13,9 @@ pub struct ImportOptions {
     pub animation: Option<String>,
     /// The moment of animations to show, in seconds; without one, files are shown as their nodes stand.
     pub time_code: Option<f64>,
+    /// The moments while the shutter is open, in seconds and in order, a power of two of them; they take the place of
+    /// `time_code`. None where the shutter is closed.
+    pub moments: Vec<f64>,
     /// Whether warnings are errors.
     pub strict: bool,
 }

@@ -3,6 +3,7 @@
 use glam::{DVec3, Quat, Vec3};
 use residual_render::camera::{CameraRecord, PixelConeRecord, fitted_height};
 use residual_render::domain::Buffer;
+use residual_render::light::SceneSphereRecord;
 use residual_render::program::CameraNode;
 use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
@@ -11,7 +12,7 @@ use super::camera_choice::CameraChoice;
 use super::error::PlanError;
 use super::optics::{Focus, Optics, distance_in_the_middle};
 use super::options::PlanOptions;
-use crate::desc::{CameraDesc, Projection, SceneDesc, Warning, WarningKind};
+use crate::desc::{CameraDesc, Pose, Projection, SceneDesc, Warning, WarningKind};
 
 /// Bounds of the scene in world space.
 #[derive(Debug, Clone, Copy)]
@@ -111,17 +112,17 @@ fn look(dir: Vec3, up: Vec3) -> Quat {
     Quat::from_mat3(&glam::Mat3::from_cols(right, back.cross(right), back))
 }
 
-fn named<'a>(scene: &'a SceneDesc, wanted: &str) -> Result<&'a CameraDesc, PlanError> {
-    let by_name = scene.cameras.iter().find(|camera| camera.name == wanted);
+fn named<'a>(pose: Pose<'a>, wanted: &str) -> Result<&'a CameraDesc, PlanError> {
+    let by_name = pose.cameras.iter().find(|camera| camera.name == wanted);
     let by_index = || {
         wanted
             .parse::<usize>()
             .ok()
-            .and_then(|index| scene.cameras.get(index))
+            .and_then(|index| pose.cameras.get(index))
     };
     by_name.or_else(by_index).ok_or_else(|| {
         let list = |(index, camera): (usize, &CameraDesc)| format!("{index} {:?}", camera.name);
-        let names: Vec<_> = scene.cameras.iter().enumerate().map(list).collect();
+        let names: Vec<_> = pose.cameras.iter().enumerate().map(list).collect();
         let available = if names.is_empty() {
             "no cameras".to_owned()
         } else {
@@ -134,25 +135,33 @@ fn named<'a>(scene: &'a SceneDesc, wanted: &str) -> Result<&'a CameraDesc, PlanE
     })
 }
 
-/// Chooses the camera and writes its buffer. Its clip distances are not rendered.
+/// A camera, and what it is focused on.
+pub(super) struct Shot {
+    pub(super) camera: CameraDesc,
+    /// 0 of cameras without a lens.
+    pub(super) focus_distance: f32,
+}
+
+/// Chooses the camera of a pose and writes its buffer. Its clip distances are not rendered. `focused` is how far away all is sharp
+/// if that is known: focus does not follow what moves while the shutter is open.
 pub(super) fn choose(
-    scene: &SceneDesc,
+    (scene, pose): (&SceneDesc, Pose<'_>),
     options: &PlanOptions,
     bounds: &Bounds,
+    focused: Option<f32>,
     data: &mut SceneData,
     warnings: &mut Vec<Warning>,
-) -> Result<(CameraNode, CameraDesc), PlanError> {
+) -> Result<(CameraNode, Shot), PlanError> {
     let aspect = options.size[0] as f32 / options.size[1] as f32;
     let default = || {
-        scene
-            .cameras
+        pose.cameras
             .first()
             .cloned()
             .unwrap_or_else(|| framing(bounds, aspect))
     };
     let mut camera = match &options.camera {
         CameraChoice::Default => {
-            if scene.cameras.is_empty() {
+            if pose.cameras.is_empty() {
                 warnings.push(Warning {
                     kind: WarningKind::NoCamera,
                     place: "cameras".to_owned(),
@@ -161,7 +170,7 @@ pub(super) fn choose(
             }
             default()
         }
-        CameraChoice::Named(wanted) => named(scene, wanted)?.clone(),
+        CameraChoice::Named(wanted) => named(pose, wanted)?.clone(),
         CameraChoice::View(view) => {
             let default = default();
             // A direction given without "up" means an upright camera, whatever the default's tilt.
@@ -206,9 +215,9 @@ pub(super) fn choose(
         (Optics::Projection, Projection::Orthographic { .. }) => CameraNode::Orthographic,
         (Optics::ThinLens { aperture, focus }, Projection::Perspective { .. }) => {
             lens_radius = aperture.radius(frame_height);
-            focus_distance = match focus {
-                Focus::Distance(distance) => distance,
-                Focus::Middle => {
+            focus_distance = match (focus, focused) {
+                (Focus::Distance(distance), _) | (Focus::Middle, Some(distance)) => distance,
+                (Focus::Middle, None) => {
                     distance_in_the_middle(&camera, data).ok_or(PlanError::NothingInFocus)?
                 }
             };
@@ -244,11 +253,36 @@ pub(super) fn choose(
         forward,
         focus_distance,
     });
-    Ok((kind, camera))
+    let shot = Shot {
+        camera,
+        focus_distance,
+    };
+    Ok((kind, shot))
+}
+
+/// Writes what some renderers read behind the camera's record: what camera rays stand for, where textures are filtered, and a sphere
+/// around everything, where paths begin at lights.
+pub(super) fn set_other_records(
+    camera: &CameraNode,
+    options: &PlanOptions,
+    filters: bool,
+    bounds: &Bounds,
+    data: &mut SceneData,
+) {
+    let has_light_paths = options.tracer.has_light_paths();
+    if filters || has_light_paths {
+        set_pixel_cone(camera, data);
+    }
+    if has_light_paths {
+        let (centre, radius) = bounds.sphere();
+        let centre = centre.to_array().into();
+        let sphere = SceneSphereRecord { centre, radius };
+        sphere.append_to(data.buffer_mut(Buffer::Camera));
+    }
 }
 
 /// Writes what camera rays stand for.
-pub(super) fn set_pixel_cone(camera: &CameraNode, data: &mut SceneData) {
+fn set_pixel_cone(camera: &CameraNode, data: &mut SceneData) {
     let (parallel, spread, turn) = match camera {
         // The film is at a distance of 1.
         CameraNode::Perspective | CameraNode::ThinLens => (0.0, 1.0, 0.0),

@@ -20,8 +20,13 @@ pub(super) enum Clipping {
 }
 
 /// Looks for triangles within the image that the file's camera would not show.
-pub(super) fn look(clip: ClipDistances, camera: &CameraDesc, data: &SceneData) -> Clipping {
-    let view = View::new(camera.projection, &data.record(0));
+pub(super) fn look(
+    clip: ClipDistances,
+    camera: &CameraDesc,
+    record: &CameraRecord,
+    data: &SceneData,
+) -> Clipping {
+    let view = View::new(camera.projection, record);
     let far = clip.far.unwrap_or(f32::INFINITY);
     let (mut nearer, mut farther) = (false, false);
     for triangle in data.records::<TriangleRecord>() {

@@ -30,6 +30,11 @@ pub enum PlanError {
     /// Nothing says how far away it is sharp.
     #[error("nothing is in the middle of the image to focus on; give a distance of focus")]
     NothingInFocus,
+    /// One renderer cannot show all moments.
+    #[error(
+        "other triangles are in the scene at other moments while the shutter is open; close it, or choose another time"
+    )]
+    OtherAtAnotherMoment,
     /// The scene needs more than 2³² words of something.
     #[error(
         "the scene is too large: its {what} do not fit 32-bit indices; split it or simplify it"

@@ -13,7 +13,7 @@ use super::camera::Bounds;
 use super::error::PlanError;
 use super::planned::PlannedObject;
 use super::planned_materials::{Materials, PlannedMaterial};
-use crate::desc::{InstanceDesc, MeshDesc, SceneDesc, Warning, WarningKind};
+use crate::desc::{InstanceDesc, MeshDesc, Pose, SceneDesc, Warning, WarningKind};
 
 /// What packing found out.
 #[derive(Debug)]
@@ -35,12 +35,13 @@ struct Visible<'a> {
 /// The instances that are seen.
 fn visible<'a>(
     scene: &'a SceneDesc,
+    pose: Pose<'a>,
     materials: &'a Materials,
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<Visible<'a>>, PlanError> {
     let mut visible = Vec::new();
     let mut triangles = 0_u64;
-    for instance in &scene.instances {
+    for instance in pose.instances {
         let mesh = &scene.meshes[instance.mesh];
         let Some(planned) = &materials.planned[mesh.material] else {
             warnings.push(Warning {
@@ -110,14 +111,15 @@ const ATTRIBUTES: [Attribute; 4] = [
     },
 ];
 
-/// Packs all instances.
+/// Packs all instances of a pose.
 pub(super) fn pack(
     scene: &SceneDesc,
+    pose: Pose<'_>,
     materials: &Materials,
     data: &mut SceneData,
     warnings: &mut Vec<Warning>,
 ) -> Result<Geometry, PlanError> {
-    let mut visible = visible(scene, materials, warnings)?;
+    let mut visible = visible(scene, pose, materials, warnings)?;
     pack_vertices(&mut visible, data)?;
     let has_vertices = visible.iter().any(|seen| seen.reads != Attributes::NONE);
     let mut bounds = Bounds::EMPTY;
@@ -270,6 +272,19 @@ fn pack_indices(seen: &Visible<'_>, data: &mut SceneData) {
         let [a, b, c] = triangle.map(|corner| seen.first_vertex + corner);
         data.push(VerticesRecord { a, b, c });
     }
+}
+
+/// The box around all that is seen in any of a scene's poses.
+pub(super) fn bounds_of_poses(scene: &SceneDesc, materials: &Materials) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for instance in scene.poses().flat_map(|pose| pose.instances) {
+        let mesh = &scene.meshes[instance.mesh];
+        if materials.planned[mesh.material].is_some() {
+            let positions = mesh.positions.iter();
+            positions.for_each(|&p| bounds.add(instance.transform.transform_point3(p)));
+        }
+    }
+    bounds
 }
 
 /// Whether a mesh's normals say more than its triangles do.

@@ -1,5 +1,7 @@
 //! Lights: records, and the alias table or the tree from which one is picked.
 
+mod later;
+
 use std::collections::HashSet;
 
 use glam::DVec3;
@@ -43,6 +45,10 @@ pub(super) struct PlannedLights {
     probabilities: Vec<f64>,
     /// Those that are triangles.
     emitters: Vec<Emitter>,
+    /// What arrives of the environment from all directions together.
+    environment: f64,
+    /// All lights are there only because there are some at other moments.
+    pub(super) is_dark: bool,
 }
 
 /// Of fewer lights at finite places there is no tree, unless it is asked for.
@@ -71,17 +77,17 @@ fn tree(lights: &[(Reach, f64)], picks: LightPicks, data: &mut SceneData) -> Opt
     Some(tree)
 }
 
-/// Plans all lights and writes their buffers.
+/// Plans all lights of the scene's first pose and writes their buffers. `radius` is that of the sphere around everything.
 pub(super) fn plan_lights(
     scene: &SceneDesc,
     materials: &Materials,
     geometry: &Geometry,
+    radius: f64,
     images: &mut Images,
     options: &PlanOptions,
     data: &mut SceneData,
 ) -> PlannedLights {
     let mut lights = PlannedLights::default();
-    let radius = f64::from(geometry.bounds.sphere().1);
     lights.add_emitting_triangles(scene, materials, geometry, data);
     for light in &scene.lights {
         lights.add_punctual(light, radius, data);
@@ -89,8 +95,16 @@ pub(super) fn plan_lights(
     if let Some(environment) = &scene.environment {
         lights.add_environment(scene, environment, images, radius, data);
     }
+    if !scene.later.is_empty() {
+        lights.stay_countable(data);
+    }
     lights.set_picks(options.light_picks_of_tracer(), data);
-    lights.set_places(options.light_places_of_tracer(), data);
+    // What moves may come near, or be a light. Places by area need nothing of the triangles' planes.
+    let places = match scene.later.is_empty() {
+        true => options.light_places_of_tracer(),
+        false => LightPlaces::Area,
+    };
+    lights.set_places(places, data);
     lights
 }
 
@@ -273,18 +287,11 @@ impl PlannedLights {
             return;
         }
         let index = self.powers.len() as u32;
-        let kind = self.kind(LightNode::Environment);
         // The weights' mean is the mean of luminance·sin θ; ∫L dω = 2π²·that.
         let mean = total / weights.len() as f64;
-        let irradiance =
+        self.environment =
             2.0 * std::f64::consts::PI.powi(2) * mean * f64::from(environment.strength);
-        push_light(data, LightRecord { kind: kind as u32 });
-        self.count(
-            kind,
-            &format!("environment {:?}", image.name),
-            std::f64::consts::PI * radius * radius * irradiance,
-            Reach::Everywhere,
-        );
+        self.push_environment(scene, radius, data);
 
         let texels = images.environment(scene, environment.image);
         let (sin, cos) = environment.rotation.sin_cos();
@@ -300,6 +307,19 @@ impl PlannedLights {
         light::set_environment(data, header, alias_entries(&weights, mean));
     }
 
+    fn push_environment(&mut self, scene: &SceneDesc, radius: f64, data: &mut SceneData) {
+        let kind = self.kind(LightNode::Environment);
+        push_light(data, LightRecord { kind: kind as u32 });
+        let image = scene.environment.as_ref().map(|sky| sky.image);
+        let name = image.map_or("", |image| &scene.images[image].name);
+        self.count(
+            kind,
+            &format!("environment {name:?}"),
+            std::f64::consts::PI * radius * radius * self.environment,
+            Reach::Everywhere,
+        );
+    }
+
     /// Mixed picks go by power, and evenly to emitting triangles, points, spots, … as far as there are any. How many *programs* for emission there are must
     /// not matter: it differs between binding policies, whose images are the same.
     fn set_picks(&mut self, picks: LightPicks, data: &mut SceneData) {
@@ -313,7 +333,8 @@ impl PlannedLights {
             alike.map(|(power, _)| power).sum()
         };
         let sums: Vec<f64> = (0..self.kinds.len()).map(of_variant).collect();
-        let variants: HashSet<_> = (0..self.kinds.len()).map(variant).collect();
+        // Of some kinds there may be lights at other moments only.
+        let variants: HashSet<_> = self.powers.iter().map(|(_, kind)| variant(*kind)).collect();
         let probability = |&(power, kind): &(f64, usize)| match picks {
             LightPicks::Auto | LightPicks::Mixed | LightPicks::Tree => {
                 0.5 * power / total + 0.5 * power / sums[kind] / variants.len() as f64

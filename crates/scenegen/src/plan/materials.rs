@@ -109,11 +109,11 @@ pub(super) fn plan_materials(
     materials
 }
 
-/// For each material that some instance uses, the attributes that any of its meshes has.
+/// For each material that some instance uses, the attributes that any of its meshes has, at any moment.
 fn available_attributes(scene: &SceneDesc) -> Vec<Option<Attributes>> {
     let mut available = vec![None; scene.materials.len()];
     let mut seen = vec![false; scene.meshes.len()];
-    for instance in &scene.instances {
+    for instance in scene.poses().flat_map(|pose| pose.instances) {
         let mesh = &scene.meshes[instance.mesh];
         if std::mem::replace(&mut seen[instance.mesh], true) {
             continue;

@@ -9,7 +9,8 @@ use residual_render::tracer::{AnyNesting, MatterNode, MediaNode, MediumRecord, N
 use super::closed::Closed;
 use super::options::BodyRule;
 use crate::desc::{
-    Attenuation, MaterialDesc, MeshDesc, Scattering, SceneDesc, SurfaceDesc, Warning, WarningKind,
+    Attenuation, MaterialDesc, MeshDesc, Pose, Scattering, SceneDesc, SurfaceDesc, Warning,
+    WarningKind,
 };
 
 /// What a body is filled with, and how it goes before others.
@@ -42,7 +43,13 @@ impl Media {
             .collect();
         let mut media = Self::default();
         let mut nesting = match rule {
-            BodyRule::Nested if some_overlap(scene, closed, &bodies) => AnyNesting::Nested,
+            BodyRule::Nested
+                if scene
+                    .poses()
+                    .any(|pose| some_overlap(scene, pose, closed, &bodies)) =>
+            {
+                AnyNesting::Nested
+            }
             BodyRule::Nested | BodyRule::Beside => AnyNesting::Beside,
         };
         if nesting == AnyNesting::Nested {
@@ -203,10 +210,15 @@ fn body(material: &MaterialDesc, is_closed: bool) -> Option<Medium> {
 
 /// Whether the boxes of two bodies overlap, so that one may be within the other. Closed meshes are bodies of their own; what
 /// else has one material may together be one.
-fn some_overlap(scene: &SceneDesc, closed: &Closed, bodies: &[Option<Medium>]) -> bool {
+fn some_overlap(
+    scene: &SceneDesc,
+    pose: Pose<'_>,
+    closed: &Closed,
+    bodies: &[Option<Medium>],
+) -> bool {
     let mut boxes = Vec::new();
     let mut parts: BTreeMap<usize, [Vec3A; 2]> = BTreeMap::new();
-    for instance in &scene.instances {
+    for instance in pose.instances {
         let mesh = &scene.meshes[instance.mesh];
         if bodies[mesh.material].is_none() {
             continue;

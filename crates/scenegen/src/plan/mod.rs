@@ -28,6 +28,7 @@ mod lights;
 mod materials;
 mod media;
 mod metallic_roughness;
+mod motion;
 mod opacity;
 mod optics;
 mod options;
@@ -41,9 +42,7 @@ mod sources;
 use glam::DVec3;
 use residual_render::domain::Buffer;
 use residual_render::layer::Layer;
-use residual_render::light::SceneSphereRecord;
 use residual_render::program::{Program, Structure};
-use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
 use residual_render::tracer::{Between, TracerNode};
 
@@ -51,13 +50,17 @@ pub use camera_choice::{CameraChoice, View};
 use clip_distances::Clipping;
 pub use error::PlanError;
 pub use explain::{BindingTimes, Decision};
+use motion::First;
 pub use optics::{Aperture, Focus, Optics};
 pub use options::{
     Binding, BodyRule, CullingRule, LightPicks, LightPlaces, PlanOptions, TextureResolution,
 };
-pub use planned::{LightKindUse, MaterialUse, Plan, PlannedObject};
+pub use planned::{LightKindUse, MaterialUse, Motion, Plan, PlannedObject};
 
-use crate::desc::{Dismissed, EnvironmentDesc, ImageDesc, SceneDesc, Texels, Warning, WarningKind};
+use crate::desc::{
+    Dismissed, EnvironmentDesc, ImageDesc, NOTHING_MOVES, SceneDesc, Texels, Warning, WarningKind,
+};
+use crate::effect::Effect;
 
 /// Plans a scene.
 ///
@@ -69,14 +72,16 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let mut images = images::Images::default();
 
     let materials = materials::plan_materials(scene, options, &mut images);
-    let geometry = geometry::pack(scene, &materials, &mut data, &mut warnings)?;
+    let mut geometry = geometry::pack(scene, scene.pose(0), &materials, &mut data, &mut warnings)?;
+    motion::set_bounds(scene, &materials, &mut geometry.bounds);
     let hidden = coincident::hide(&mut data);
     // Only paths need lights.
-    let lights = match options.tracer {
+    let mut lights = match options.tracer {
         TracerNode::Path(_) | TracerNode::Bidirectional(_) => lights::plan_lights(
             scene,
             &materials,
             &geometry,
+            f64::from(geometry.bounds.sphere().1),
             &mut images,
             options,
             &mut data,
@@ -86,29 +91,23 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     let needs_light = options.tracer.needs_light();
     // A black environment is darkness that was asked for.
     if needs_light && lights.kinds.is_empty() && scene.environment.is_none() {
-        let mut plan = plan(&scene.with_white_sky(), options)?;
-        plan.warnings.push(Warning {
-            kind: WarningKind::NoLight,
-            place: "lights".to_owned(),
-            message: "the scene has no light; using a white sky (--env FILE for another)"
-                .to_owned(),
-        });
-        return Ok(plan);
+        return plan_under_white_sky(scene, options);
     }
-    let (camera, chosen) =
-        camera::choose(scene, options, &geometry.bounds, &mut data, &mut warnings)?;
-    let has_light_paths = options.tracer.has_light_paths();
-    if has_light_paths || materials.programs.iter().any(Program::filters) {
-        camera::set_pixel_cone(&camera, &mut data);
-    }
-    if has_light_paths {
-        let (centre, radius) = geometry.bounds.sphere();
-        let record = SceneSphereRecord {
-            centre: centre.to_array().into(),
-            radius,
-        };
-        record.append_to(data.buffer_mut(Buffer::Camera));
-    }
+    let (camera, shot) = camera::choose(
+        (scene, scene.pose(0)),
+        options,
+        &geometry.bounds,
+        None,
+        &mut data,
+        &mut warnings,
+    )?;
+    camera::set_other_records(
+        &camera,
+        options,
+        materials.filter(),
+        &geometry.bounds,
+        &mut data,
+    );
     let mut dismissed = [&scene.dismissed[..], &materials.dismissed].concat();
     if hidden > 0 {
         dismissed.push(Dismissed {
@@ -117,13 +116,30 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             reason: format!("{hidden} triangles lie exactly on others, which hide them"),
         });
     }
+    let chosen = &shot.camera;
     match chosen
         .clip
-        .map(|clip| clip_distances::look(clip, &chosen, &data))
+        .map(|clip| clip_distances::look(clip, chosen, &data.record(0), &data))
     {
         Some(Clipping::Something(warning)) => warnings.push(warning),
         Some(Clipping::Nothing(reason)) => dismissed.push(reason),
         None => {}
+    }
+    let mut depth = geometry.bounds.farthest(chosen.position);
+    let first = First {
+        scene,
+        options,
+        materials: &materials,
+        geometry: &geometry,
+        camera: (&camera, &shot),
+        data: &data,
+    };
+    let motion = first.motion(&mut lights, &mut depth, &mut warnings)?;
+    if motion.is_none() && !scene.later.is_empty() {
+        return plan_with_closed_shutter(scene, options);
+    }
+    if needs_light && lights.is_dark && scene.environment.is_none() {
+        return plan_under_white_sky(scene, options);
     }
     images.pack(scene, &mut data)?;
     *data.buffer_mut(Buffer::Params) = materials.params;
@@ -152,11 +168,12 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             layers: options.layers,
         },
         data,
+        motion,
         materials: materials.uses,
         objects: geometry.objects,
         lights: lights.uses,
-        depth: geometry.bounds.farthest(chosen.position),
-        camera_name: chosen.name,
+        depth,
+        camera_name: shot.camera.name,
         diagonal: 2.0 * geometry.bounds.sphere().1,
         warnings,
         dismissed,
@@ -179,6 +196,30 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
     if of_objects.iter().any(|&layer| options.layers.has(layer)) {
         plan.pack_objects();
     }
+    Ok(plan)
+}
+
+/// Plans a scene in which nothing that is seen moves.
+fn plan_with_closed_shutter(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError> {
+    let mut scene = scene.clone();
+    scene.close_shutter();
+    let mut plan = plan(&scene, options)?;
+    plan.dismissed.push(Dismissed {
+        effect: Some(Effect::MotionBlur),
+        place: "animations".to_owned(),
+        reason: NOTHING_MOVES.to_owned(),
+    });
+    Ok(plan)
+}
+
+/// Plans a scene that has no light of its own.
+fn plan_under_white_sky(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError> {
+    let mut plan = plan(&scene.with_white_sky(), options)?;
+    plan.warnings.push(Warning {
+        kind: WarningKind::NoLight,
+        place: "lights".to_owned(),
+        message: "the scene has no light; using a white sky (--env FILE for another)".to_owned(),
+    });
     Ok(plan)
 }
 

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use residual_render::changed_data::ChangedData;
 use residual_render::cryptomatte;
 use residual_render::domain::Buffer;
 use residual_render::layer::Layer;
@@ -25,8 +26,10 @@ pub struct Plan {
     pub light_picks: LightPicks,
     /// The static half.
     pub structure: Structure,
-    /// The dynamic half.
+    /// The dynamic half; where the shutter is open, at the first moment.
     pub data: SceneData,
+    /// What moves while the shutter is open, if anything does.
+    pub motion: Option<Motion>,
     /// For each program, the materials that use it.
     pub materials: Vec<Vec<MaterialUse>>,
     /// What is seen, in the order of its triangles: a triangle's object is an index into this list.
@@ -45,6 +48,17 @@ pub struct Plan {
     pub dismissed: Vec<Dismissed>,
 }
 
+/// What a scene shows while the shutter is open.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    /// What of the data is different in other poses than the first, whose data are the plan's.
+    pub later: Vec<ChangedData>,
+    /// For each moment, in order of time, the pose then: 0 is the first, `k` is that of `later[k - 1]`.
+    pub moments: Vec<usize>,
+    /// What moves, such as `node "Wheel"`.
+    pub sources: Vec<String>,
+}
+
 impl Plan {
     /// Fills [`Buffer::Objects`], which is empty unless layers read it.
     pub(super) fn pack_objects(&mut self) {
@@ -56,6 +70,13 @@ impl Plan {
                 material_name_id: cryptomatte::id(&object.material_name),
             });
         }
+    }
+
+    /// Bytes of the data at all moments.
+    pub fn memory_bytes(&self) -> usize {
+        let later = self.motion.iter().flat_map(|motion| &motion.later);
+        let later: usize = later.map(ChangedData::memory_bytes).sum();
+        self.data.memory_bytes() + later
     }
 
     /// The names behind the ids of a Cryptomatte layer; `None` for other layers.

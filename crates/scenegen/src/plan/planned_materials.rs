@@ -36,6 +36,11 @@ pub(super) struct Materials {
 }
 
 impl Materials {
+    /// Whether any program reads textures at a resolution that depends on the camera.
+    pub(super) fn filter(&self) -> bool {
+        self.programs.iter().any(Program::filters)
+    }
+
     pub(super) fn of(&self, material: usize) -> &PlannedMaterial {
         self.planned[material]
             .as_ref()

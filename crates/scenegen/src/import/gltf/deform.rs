@@ -11,7 +11,7 @@ use crate::import::mesh::RawMesh;
 use crate::import::warnings::Warnings;
 
 /// How a node shows its mesh.
-#[derive(Default)]
+#[derive(Clone, Default, PartialEq)]
 pub(super) struct Deformation {
     /// Of its morph targets; those that are missing are 0.
     pub(super) weights: Vec<f32>,

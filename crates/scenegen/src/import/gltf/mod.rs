@@ -1,7 +1,7 @@
 //! glTF 2.0 files: nodes are walked, and what they show is read when it is first asked for.
 //!
 //! ```text
-//! file ─ glb, json_text, root, repair ─▶ Document ─ animation, nodes ─▶ PlacedNode ─┬─ meshes ─ primitives ─ accessors ─▶ RawMesh ─ deform, placements
+//! file ─ glb, json_text, root, repair ─▶ Document ─ animation, nodes ─▶ PlacedNode ─┬─ meshes ─ primitives ─ accessors ─▶ RawMesh ─ deform, placements ─ poses
 //!    (JSON, buffers; meshopt, draco)                             │   └─ skins
 //!                                                                ├─ materials ─ material ─ surface, layers ─▶ MaterialDesc
 //!                                                                │   └─ textures ─ images ─▶ TextureDesc, ImageRequest
@@ -32,6 +32,7 @@ mod meshes;
 mod meshopt;
 mod nodes;
 mod placements;
+mod poses;
 mod primitives;
 mod repair;
 mod root;

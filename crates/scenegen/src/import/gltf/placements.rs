@@ -33,19 +33,20 @@ pub(super) fn origin(placements: &[Placement], meshes: &[MeshDesc]) -> DVec3 {
     origin::choose(corners)
 }
 
-/// The instances, relative to an origin. `named` gives the name and the JSON path of a node.
+/// The instances, relative to an origin; `None`, after a warning, for those of which nothing can be seen. `named` gives the name
+/// and the JSON path of a node.
 pub(super) fn instances<'a>(
     placements: &[Placement],
     meshes: &[MeshDesc],
     origin: DVec3,
     named: impl Fn(usize) -> [&'a str; 2],
     warnings: &mut Warnings,
-) -> Vec<InstanceDesc> {
+) -> Vec<Option<InstanceDesc>> {
     let instance = |placement: &Placement| {
         let [name, place] = named(placement.node);
         let mut world = placement.world;
         world.translation -= origin;
         place_mesh(meshes, placement.mesh, name, &world, place, warnings)
     };
-    placements.iter().filter_map(instance).collect()
+    placements.iter().map(instance).collect()
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use gltf::json::{Index, Mesh, Node};
 
@@ -15,8 +15,11 @@ use super::materials::Materials;
 use super::meshes::Meshes;
 use super::nodes::PlacedNode;
 use super::placements::Placement;
-use super::{animation, cameras, instancing, lights, nodes, placements, skins, variants};
-use crate::desc::{InstanceDesc, SceneDesc};
+use super::poses::PoseDraft;
+use super::{animation, cameras, instancing, lights, nodes, placements, poses, skins, variants};
+use crate::desc::{InstanceDesc, NOTHING_MOVES, SceneDesc};
+use crate::effect::Effect;
+use crate::import::budget::Budget;
 use crate::import::error::{Fault, ImportError};
 use crate::import::options::ImportOptions;
 use crate::import::warnings::Warnings;
@@ -42,50 +45,39 @@ fn read(
         accessors: Accessors::new(document),
         materials: Materials::new(document),
         meshes: Meshes::new(document, variant),
+        deformed: HashMap::new(),
+    };
+    let times: Vec<Option<f64>> = match options.moments.is_empty() {
+        true => vec![options.time_code],
+        false => options.moments.iter().copied().map(Some).collect(),
     };
     let mut scene = SceneDesc::default();
-    let pose = animation::pose_at(
-        &document.root,
-        options.animation.as_deref(),
-        options.time_code,
-        &mut reader.accessors,
-        warnings,
-    )?;
-    let nodes = nodes::flatten(document, &pose, warnings)?;
-    let worlds = skins::worlds(&nodes);
-    let mut placements = Vec::new();
-    for (index, placed) in nodes.iter().enumerate() {
-        if !placed.is_visible && shows_something(placed.node) {
-            warnings.dismiss(None, &*placed.place, "KHR_node_visibility hides it");
+    let mut drafts: Vec<PoseDraft> = Vec::with_capacity(times.len());
+    for time in &times {
+        // What is deformed is kept for each moment, as often as the user asks for.
+        reader.accessors.budget = Budget::geometry();
+        let animation = options.animation.as_deref();
+        let pose = animation::pose_at(
+            &document.root,
+            animation,
+            *time,
+            &mut reader.accessors,
+            warnings,
+        )?;
+        let nodes = nodes::flatten(document, &pose, warnings)?;
+        let placements = reader.place_all(&nodes, &pose, warnings)?;
+        if drafts.is_empty() {
+            scene.origin = placements::origin(&placements, &reader.meshes.list);
         }
-        if placed.is_visible
-            && let Some(mesh) = placed.node.mesh
-        {
-            let deformation = reader.deformation(mesh, placed, &pose, &worlds, warnings)?;
-            reader.place(mesh, index, placed, &deformation, &mut placements, warnings)?;
-        }
-    }
-    let meshes = &reader.meshes.list;
-    scene.origin = placements::origin(&placements, meshes);
-    let named = |node: usize| [&*nodes[node].name, &*nodes[node].place];
-    scene.instances = placements::instances(&placements, meshes, scene.origin, named, warnings);
-    for placed in &nodes {
-        let extensions = placed.node.extensions.as_ref();
-        let light = extensions.and_then(|extensions| extensions.khr_lights_punctual.as_ref());
-        if placed.is_visible
-            && let Some(light) = light
-        {
-            let light = lights::read(document, light.light, placed, scene.origin, warnings)?;
-            scene.lights.extend(light);
-        }
-        if let Some(camera) = placed.node.camera {
-            let camera = cameras::read(document, camera, placed, scene.origin, warnings)?;
-            scene.cameras.extend(camera);
-        }
+        drafts.push(reader.draft(&nodes, &placements, scene.origin, warnings)?);
     }
     reader.meshes.dismiss_unused(warnings);
     reader.materials.dismiss_unused(warnings);
     scene.meshes = reader.meshes.list;
+    poses::write(drafts, &mut scene)?;
+    if times.len() > 1 && scene.later.is_empty() {
+        warnings.dismiss(Some(Effect::MotionBlur), "animations", NOTHING_MOVES);
+    }
     (scene.materials, scene.textures, scene.images) = reader.materials.finish(warnings);
     Ok(scene)
 }
@@ -102,9 +94,65 @@ struct Reader<'a> {
     accessors: Accessors<'a>,
     materials: Materials<'a>,
     meshes: Meshes<'a>,
+    /// What nodes, by their place among those of the scene, showed of deformed meshes at the last moment, and how.
+    deformed: HashMap<usize, (Deformation, Vec<usize>)>,
 }
 
 impl Reader<'_> {
+    /// Places the meshes of all nodes.
+    fn place_all(
+        &mut self,
+        nodes: &[PlacedNode<'_>],
+        pose: &Pose,
+        warnings: &mut Warnings,
+    ) -> Result<Vec<Placement>, Fault> {
+        let worlds = skins::worlds(nodes);
+        let mut placements = Vec::new();
+        for (index, placed) in nodes.iter().enumerate() {
+            if !placed.is_visible && shows_something(placed.node) {
+                warnings.dismiss(None, &*placed.place, "KHR_node_visibility hides it");
+            }
+            if placed.is_visible
+                && let Some(mesh) = placed.node.mesh
+            {
+                let deformation = self.deformation(mesh, placed, pose, &worlds, warnings)?;
+                self.place(mesh, index, placed, &deformation, &mut placements, warnings)?;
+            }
+        }
+        Ok(placements)
+    }
+
+    /// What is where, relative to an origin.
+    fn draft(
+        &self,
+        nodes: &[PlacedNode<'_>],
+        placements: &[Placement],
+        origin: DVec3,
+        warnings: &mut Warnings,
+    ) -> Result<PoseDraft, Fault> {
+        let named = |node: usize| [&*nodes[node].name, &*nodes[node].place];
+        let meshes = &self.meshes.list;
+        let mut draft = PoseDraft {
+            instances: placements::instances(placements, meshes, origin, named, warnings),
+            ..PoseDraft::default()
+        };
+        for placed in nodes {
+            let extensions = placed.node.extensions.as_ref();
+            let light = extensions.and_then(|extensions| extensions.khr_lights_punctual.as_ref());
+            if placed.is_visible
+                && let Some(light) = light
+            {
+                let light = lights::read(self.document, light.light, placed, origin, warnings)?;
+                draft.lights.push(light);
+            }
+            if let Some(camera) = placed.node.camera {
+                let camera = cameras::read(self.document, camera, placed, origin, warnings)?;
+                draft.cameras.push(camera);
+            }
+        }
+        Ok(draft)
+    }
+
     /// How a node shows its mesh.
     fn deformation(
         &mut self,
@@ -151,14 +199,21 @@ impl Reader<'_> {
         placements: &mut Vec<Placement>,
         warnings: &mut Warnings,
     ) -> Result<(), Fault> {
-        let meshes = self.meshes.indices_of(
-            mesh,
-            deformation,
-            &placed.place,
-            &mut self.accessors,
-            &mut self.materials,
-            warnings,
-        )?;
+        let meshes = match self.deformed.get(&node) {
+            Some((known, meshes)) if known == deformation => meshes.clone(),
+            _ => self.meshes.indices_of(
+                mesh,
+                deformation,
+                &placed.place,
+                &mut self.accessors,
+                &mut self.materials,
+                warnings,
+            )?,
+        };
+        if !deformation.is_none() {
+            let known = (deformation.clone(), meshes.clone());
+            self.deformed.insert(node, known);
+        }
         let copies = instancing::copies(placed, &mut self.accessors)?;
         // A mesh of many primitives in many nodes is a product that no file size bounds.
         let count = meshes.len() as u64 * copies.len() as u64;

@@ -13,6 +13,7 @@ use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
 
 /// Where the joints of a skin carry vertices.
+#[derive(Clone, PartialEq)]
 pub(super) struct PosedSkin {
     /// From the space in which the vertices are given, for each joint, to that of the instance.
     pub(super) joints: Vec<DAffine3>,
