@@ -84,7 +84,9 @@ fn what_vanishes_is_there_without_size() {
     animate(&mut gltf, 0, "scale", "STEP", &[[0.0; 3], [2.0; 3]]);
     let scene = open(&gltf, &[0.5, 1.5]).unwrap();
     let [before, after] = [0, 1].map(|pose| &scene.pose(pose).instances[0]);
-    let corner = |transform: glam::Affine3A| transform.transform_point3(Vec3::ONE);
+    // A scene that is a point at its first moment has its origin there.
+    let origin = scene.origin.as_vec3();
+    let corner = |transform: glam::Affine3A| origin + transform.transform_point3(Vec3::ONE);
     assert_eq!(corner(before.transform), Vec3::new(1.0, 2.0, 3.0));
     assert_eq!(corner(after.transform), Vec3::new(3.0, 4.0, 5.0));
     assert_eq!((before.mesh, &before.name), (after.mesh, &after.name));
