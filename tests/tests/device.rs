@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use residual_device_cpu::{CpuDevice, LaneCount, TileJob, TileRenderer};
 use residual_render::film::{Pass, SampleSet, Sampling, TileRect, TileSamples};
 use residual_render::passes::{Counters, RenderOptions};
-use residual_render::tracer::TracerOptions;
+use residual_render::tracer::{PathOrigin, TracerOptions};
 use residual_scenegen::desc::{MaterialDesc, Projection, SceneDesc};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
 use residual_tests::fixtures::{self, Builder, color, material, matte, sheet};
@@ -46,6 +46,7 @@ fn job(tiles: &[TileSamples]) -> TileJob<'_> {
             max_depth: 6,
             roulette_from: 3,
             reach: f32::MAX,
+            origin: PathOrigin::Camera,
         },
     }
 }

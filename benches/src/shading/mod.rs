@@ -21,7 +21,7 @@ use residual_render::layer::Layers;
 use residual_render::program::{CameraNode, LightNode, Structure};
 use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
-use residual_render::tracer::{Between, TracerNode, TracerOptions};
+use residual_render::tracer::{Between, PathOrigin, TracerNode, TracerOptions};
 use residual_scenegen::plan::{Binding, LightKindUse, LightPicks, MaterialUse, Plan};
 use serde_json::{Value, json};
 
@@ -70,6 +70,7 @@ pub fn plan() -> Plan {
             layers: Layers::NONE,
         },
         data: stream::data(&params),
+        motion: None,
         materials: programs().map(uses).collect(),
         objects: Vec::new(),
         lights: vec![LightKindUse {
@@ -227,6 +228,7 @@ impl<'a> Contender<'a> {
                 max_depth: u32::MAX,
                 roulette_from: 5,
                 reach: f32::MAX,
+                origin: PathOrigin::Camera,
             },
         };
         let view = SceneView {

@@ -45,6 +45,7 @@ fn path(d: Scalar<'_>, media: u32) -> Path<Scalar<'_>> {
         ray: PathRay::unbounded(d, vec3(0.2, 0.2, 1.0), vec3(0.0, 0.0, -1.0)),
         throughput: vec3(1.0, 1.0, 1.0),
         pdf: 0.0,
+        rivals: 0.0,
         key: SampleKey {
             pixel: Uint(0),
             index: Uint(0),
