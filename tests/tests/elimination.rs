@@ -205,8 +205,10 @@ const COMMON: &[&str] = &[
     // How many numbers a sample has.
     "render/src/film/replicates.rs",
     "render/src/layer.rs",
+    "render/src/light/kinds.rs",
     "render/src/light/mod.rs",
     "render/src/light/pick.rs",
+    "render/src/light/scene_lights.rs",
     "render/src/material.rs",
     "render/src/math/",
     // Counters of rays and seconds.
@@ -224,6 +226,7 @@ const COMMON: &[&str] = &[
     "render/src/tracer/matter.rs",
     "render/src/tracer/mis.rs",
     "render/src/tracer/nesting.rs",
+    "render/src/tracer/next_event.rs",
     "render/src/tracer/path.rs",
     "render/src/tracer/path_state.rs",
     "render/src/tracer/settings.rs",
@@ -333,6 +336,8 @@ const NOT_IN_CORNELL: &[&str] = &[
     "decode_normal",
     "tracer::in_media",
     "tracer::dispersing",
+    "tracer::light_paths",
+    "light::emission",
     "bvh::instances",
 ];
 

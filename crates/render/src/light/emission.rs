@@ -1,6 +1,5 @@
 //! Light that leaves lights: where light paths begin.
 
-use super::{KindIndex, LightKinds, Pick};
 use crate::camera::{CameraRecord, PixelConeRecord};
 use crate::domain::{Buffer, Bundle, Domain};
 use crate::math::warp::disc;
@@ -103,30 +102,5 @@ impl<D: Domain> Emission<D> {
             found,
             infinite: d.truth(true),
         }
-    }
-}
-
-/// Picks a light by its power and samples what leaves it: place, a number for lights that [take three](LightKinds::takes_three),
-/// and direction. Flux and densities include the pick.
-#[inline(always)]
-pub fn emit<D: Domain, L: LightKinds<D> + ?Sized>(
-    d: D,
-    lights: &L,
-    u: EmissionNumbers<D::F>,
-) -> Emission<D> {
-    // Lights are in a table where paths begin at them, whose picks ask for no place.
-    let nowhere = Vec3::splat(d.lit(0.0));
-    let Pick {
-        kind,
-        record,
-        probability,
-        place,
-    } = lights.pick(d, nowhere, u.place);
-    let kind = KindIndex { kind, first: 0 };
-    let emission = lights.emit(d, kind, record, EmissionNumbers { place, ..u });
-    Emission {
-        flux: emission.flux.scale(d.lit(1.0) / probability),
-        found: emission.found * probability,
-        ..emission
     }
 }

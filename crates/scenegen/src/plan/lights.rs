@@ -99,11 +99,7 @@ pub(super) fn plan_lights(
         lights.stay_countable(data);
     }
     lights.set_picks(options.light_picks_of_tracer(), data);
-    // What moves may come near, or be a light. Places by area need nothing of the triangles' planes.
-    let places = match scene.later.is_empty() {
-        true => options.light_places_of_tracer(),
-        false => LightPlaces::Area,
-    };
+    let places = options.light_places_of_tracer(!scene.later.is_empty());
     lights.set_places(places, data);
     lights
 }

@@ -145,9 +145,9 @@ impl PlanOptions {
     }
 
     /// Where light samples of the tracer lie on emitting triangles. Light leaves them evenly by area, which is what light paths are
-    /// weighed against.
-    pub(super) fn light_places_of_tracer(&self) -> LightPlaces {
-        match self.tracer.has_light_paths() {
+    /// weighed against. What moves may come near, or be a light: places by area need nothing of the triangles' planes.
+    pub(super) fn light_places_of_tracer(&self, moves: bool) -> LightPlaces {
+        match moves || self.tracer.has_light_paths() {
             true => LightPlaces::Area,
             false => self.light_places,
         }
