@@ -133,6 +133,17 @@ impl CpuDevice {
         pass: Pass,
     ) -> Counters {
         let mut counters = Counters::default();
+        if renderer.has_light_paths() {
+            // All pixels get their samples together.
+            let mut left = pass;
+            while left.count > 0 {
+                let pose = pose_of(left.first);
+                let (now, later) = split(left, |sample| pose_of(sample) == pose);
+                counters += self.pass(renderer, &views(pose), options, film, now);
+                left = later;
+            }
+            return counters;
+        }
         let mut left = film.tile_passes(pass);
         loop {
             left.retain(|tile| tile.pass.count > 0);
@@ -144,16 +155,11 @@ impl CpuDevice {
                 .iter_mut()
                 .filter(|tile| pose_of(tile.pass.first) == pose)
                 .map(|tile| {
-                    let Pass { first, count } = tile.pass;
-                    let same = (first..first + count).take_while(|&sample| pose_of(sample) == pose);
-                    let same = same.count() as u32;
-                    tile.pass = Pass {
-                        first: first + same,
-                        count: count - same,
-                    };
+                    let (now, later) = split(tile.pass, |sample| pose_of(sample) == pose);
+                    tile.pass = later;
                     TilePass {
                         set: tile.set,
-                        pass: Pass { first, count: same },
+                        pass: now,
                         tile: &mut *tile.tile,
                     }
                 });
@@ -254,6 +260,18 @@ impl CpuDevice {
 
 /// About as many light paths have their splats in memory at a time.
 const LIGHT_PATHS: u64 = 1 << 20;
+
+/// The first samples of a pass, as long as they are of some kind, and the others.
+fn split(pass: Pass, is_of_kind: impl Fn(u32) -> bool) -> (Pass, Pass) {
+    let Pass { first, count } = pass;
+    let samples = first..first + count;
+    let now = samples.take_while(|&sample| is_of_kind(sample)).count() as u32;
+    let later = Pass {
+        first: first + now,
+        count: count - now,
+    };
+    (Pass { first, count: now }, later)
+}
 
 /// A pass of an image of this size in parts of so few samples.
 fn parts(pass: Pass, size: [u32; 2]) -> impl Iterator<Item = Pass> {

@@ -5,6 +5,7 @@ use residual_driver::poses::Poses;
 use residual_render::film::Film;
 use residual_render::passes::RenderOptions;
 use residual_render::shutter::Moments;
+use residual_render::tracer::TracerNode;
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
@@ -199,8 +200,14 @@ impl File {
 
 /// Plans a scene.
 pub(crate) fn planned(scene: &SceneDesc, size: [u32; 2]) -> Plan {
+    planned_for(TracerNode::default(), scene, size)
+}
+
+/// Plans a scene for a tracer.
+pub(crate) fn planned_for(tracer: TracerNode, scene: &SceneDesc, size: [u32; 2]) -> Plan {
     let options = PlanOptions {
         size,
+        tracer,
         ..PlanOptions::default()
     };
     plan(scene, &options).unwrap()

@@ -6,12 +6,13 @@ use residual_render::film::{Film, Sampling, TILE_SIZE};
 use residual_render::passes::{Pass, RenderOptions};
 use residual_render::program::LightNode;
 use residual_render::shutter::Moments;
+use residual_render::tracer::{AnySharing, TracerNode};
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{LightPicks, PlanOptions, plan};
 use residual_tests::pictures::first_difference;
 use serde_json::json;
 
-use super::file::{File, interpret, options, planned, turn};
+use super::file::{File, interpret, options, planned, planned_for, turn};
 
 const SIZE: [u32; 2] = [40, 30];
 
@@ -67,10 +68,19 @@ fn expect_same(a: &Film, b: &Film) {
 
 #[test]
 fn every_sample_is_that_of_its_moment() {
+    check_samples(TracerNode::default());
+}
+
+#[test]
+fn paths_from_lights_are_of_the_moment_of_those_from_the_camera() {
+    check_samples(TracerNode::Bidirectional(AnySharing::Combined));
+}
+
+fn check_samples(tracer: TracerNode) {
     let (file, seed) = (busy(), 11);
     let moments = Moments::new(4, seed).unwrap();
     let times: Vec<f64> = moments.times().collect();
-    let open = planned(&file.open(&moments), SIZE);
+    let open = planned_for(tracer, &file.open(&moments), SIZE);
     let effects = Effects::of(&open);
     for source in [
         "node \"card\"",
@@ -89,7 +99,7 @@ fn every_sample_is_that_of_its_moment() {
     let mut sums = vec![[0.0; 3]; film.image().len()];
     for sample in 0..8 {
         let time = times[moments.of_sample(sample) as usize];
-        let closed = planned(&file.at(Some(time), Vec::new()), SIZE);
+        let closed = planned_for(tracer, &file.at(Some(time), Vec::new()), SIZE);
         assert!(closed.motion.is_none());
         assert_eq!(closed.structure, open.structure);
         let interpreter = Interpreter::new(closed.structure.clone(), LaneCount::native());
