@@ -598,11 +598,49 @@ def textured():
         "KHR_materials_transmission", "KHR_materials_volume", "KHR_texture_transform"])
 
 
+# Caustics
+
+def caustics():
+    """A ball of glass and a ring of copper on a floor, under a small lamp."""
+    file = Gltf()
+    matte = {"KHR_materials_specular": {"specularFactor": 0}}
+    floor = file.material("floor", (0.75, 0.72, 0.68), extensions=matte)
+    glass = file.material("glass", (1, 1, 1), roughness=0, extensions={
+        "KHR_materials_transmission": {"transmissionFactor": 1},
+        "KHR_materials_ior": {"ior": 1.5},
+        "KHR_materials_volume": {"thicknessFactor": 1.2, "attenuationColor": [0.95, 0.8, 0.6], "attenuationDistance": 1.0},
+    })
+    copper = file.material("copper", (0.95, 0.64, 0.54), roughness=0.05, metallic=1, doubleSided=True)
+    lamp = file.material("lamp", (0, 0, 0), emissiveFactor=(1.0, 0.9, 0.8), extensions=matte | {
+        "KHR_materials_emissive_strength": {"emissiveStrength": 2000}})
+
+    ground = Mesh()
+    ground.quad((-6, 0, 6), (6, 0, 6), (6, 0, -6), (-6, 0, -6))
+    ground.quad((-6, 0, -3), (6, 0, -3), (6, 6, -3), (-6, 6, -3))
+    file.shape("ground", ground, floor)
+    ball = Mesh()
+    ball.sphere(0.6)
+    file.shape("ball", ball, glass, translation=(-0.7, 0.62, 0.1))
+    ring = Mesh()
+    ring.lathe([(0.8, 0.35), (0.8, 0.0)], lambda _: None, columns=96)
+    file.shape("ring", ring, copper, translation=(1.0, 0.002, 0.5))
+    bulb = Mesh()
+    bulb.quad((-0.06, -0.06, 0), (0.06, -0.06, 0), (0.06, 0.06, 0), (-0.06, 0.06, 0))
+    at, target = (-2.2, 3.2, 1.8), (0, 0.3, 0.2)
+    # What looks along -Z shines along +Z.
+    file.shape("lamp", bulb, lamp, translation=at, rotation=look(at, sub(scale(at, 2), target)))
+    file.camera((1.2, 2.6, 5.2), (0.1, 0.35, 0.1), 35)
+    file.write(HERE / "caustics.gltf", extensions=[
+        "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
+        "KHR_materials_volume"])
+
+
 def write_all():
     cornell = cornell_meshes()
     cornell_gltf(cornell)
     cornell_obj(cornell)
     textured()
+    caustics()
 
 
 def check():

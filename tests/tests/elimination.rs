@@ -165,6 +165,7 @@ const SOURCES: &[(&str, &[Effect])] = &[
         "render/src/math/spherical_triangle.rs",
         &[Effect::SolidAngleSampling],
     ),
+    ("render/src/light/cone.rs", SIZED_LIGHTS),
     ("render/src/light/sized.rs", SIZED_LIGHTS),
     (
         "render/src/light/punctual.rs",

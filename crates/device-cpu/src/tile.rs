@@ -60,7 +60,7 @@ where
         None
     };
     let mut first_rays = FirstRays::new(job);
-    let has_rivals = tracer.has_light_paths().is_some();
+    let has_rivals = tracer.path_origin().is_some();
     let capacity = STREAM.min(job.samples() + MAX_LANES);
     let mut paths = PathStream::with_capacity(capacity, has_rivals);
     let mut next = PathStream::with_capacity(capacity, has_rivals);
@@ -68,7 +68,7 @@ where
     let mut hits = SortedHits::with_capacity(capacity, scene.programs());
     let mut counters = Counters::default();
     let mut clock = Stopwatch(Instant::now());
-    let mut samples = match tracer.has_light_paths() {
+    let mut samples = match tracer.path_origin() {
         Some(PathOrigin::Lights) => Samples::splats(samples),
         None | Some(PathOrigin::Camera) => Samples::sums(samples, tracer.layers()),
     };

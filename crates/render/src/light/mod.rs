@@ -7,6 +7,7 @@
 mod area;
 mod area_by_solid_angle;
 mod by_tree;
+mod cone;
 mod emission;
 mod environment;
 mod kinds;

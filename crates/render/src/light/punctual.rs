@@ -4,7 +4,7 @@
 //! Cosines of small angles are 1 in 32 bits; so the formula is written in versines, 1 − cos θ = |a + b|²/2 of unit vectors
 //! a and −b, which keep their digits in cones of any width.
 
-use super::sized::in_cone;
+use super::cone::in_cone;
 use super::{Emission, EmissionNumbers, LightKind, LightSample, NOT_FOUND};
 use crate::domain::{Buffer, Domain};
 use crate::math::vec3::vec3;

@@ -4,6 +4,7 @@
 //! them, as they do not see lights without a size, whose records these lights have. What a sample brings is therefore
 //! radiance over density, which is finite for any size, with 1 for its density.
 
+use super::cone::in_cone;
 use super::punctual::{EVERYWHERE, PunctualRecord, all_directions};
 use super::{Emission, EmissionNumbers, LightKind, LightSample, NOT_FOUND};
 use crate::domain::{Bundle, Domain};
@@ -20,23 +21,6 @@ pub struct SphericalPoint;
 /// A sphere of which every point shines into a cone: in each direction as much as a spot does.
 #[derive(Clone, Copy, Debug)]
 pub struct SphericalSpot;
-
-/// A unit direction in a cone around the unit vector `axis`, evenly distributed over the cone's solid angle, and the versine of
-/// its angle to the axis. `widest` is the versine of the cone's half-angle: narrow cones keep their digits.
-#[inline(always)]
-pub(super) fn in_cone<D: Domain>(
-    d: D,
-    axis: Vec3<D::F>,
-    widest: D::F,
-    u: [D::F; 2],
-) -> (Vec3<D::F>, D::F) {
-    let versine = u[0] * widest;
-    let [x, y] = warp::disc(d, u);
-    // sin² θ = v·(2 − v), of which the disc has the share of u.
-    let sine = d.sqrt(widest * (d.lit(2.0) - versine));
-    let local = vec3(x * sine, y * sine, d.lit(1.0) - versine);
-    (Frame::around(d, axis).to_world(local), versine)
-}
 
 impl<D: Domain> LightKind<D> for Sun {
     #[inline(always)]

@@ -200,8 +200,8 @@ where
     }
 
     #[inline(always)]
-    fn has_light_paths(&self) -> Option<PathOrigin> {
-        each!(self, tracer => tracer.has_light_paths())
+    fn path_origin(&self) -> Option<PathOrigin> {
+        each!(self, tracer => tracer.path_origin())
     }
 
     #[inline(always)]

@@ -58,10 +58,10 @@ where
     }
 
     #[inline(always)]
-    fn has_light_paths(&self) -> Option<PathOrigin> {
+    fn path_origin(&self) -> Option<PathOrigin> {
         match self {
             Self::Path(_) => None,
-            Self::Bidirectional(paths) => paths.has_light_paths(),
+            Self::Bidirectional(paths) => paths.path_origin(),
         }
     }
 

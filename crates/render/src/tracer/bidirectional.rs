@@ -3,7 +3,7 @@
 use super::camera_paths::CameraPaths;
 use super::light_paths::LightPaths;
 use super::{
-    Bounce, Path, PathOrigin, PathTracer, PowerHeuristic, Settings, Shadow, Tracer, Vertex,
+    Bounce, Path, PathOrigin, PathTracer, PowerHeuristic, Settings, Shadow, Sharing, Tracer, Vertex,
 };
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -29,49 +29,6 @@ pub struct Bidirectional<D: Domain, S, C, W> {
     pub camera: C,
     /// Who finds what.
     pub sharing: W,
-}
-
-/// How paths from both ends share the image.
-pub trait Sharing: Copy {
-    /// Both find what they can, weighed against each other. If not, light paths find all but what the camera sees of lights.
-    fn is_shared(self) -> bool;
-}
-
-/// By multiple importance sampling.
-#[derive(Clone, Copy, Debug)]
-pub struct Combined;
-/// Light paths find all that they can; from the camera only lights and backgrounds are seen, and layers filled.
-#[derive(Clone, Copy, Debug)]
-pub struct LightPathsOnly;
-
-impl Sharing for Combined {
-    #[inline(always)]
-    fn is_shared(self) -> bool {
-        true
-    }
-}
-
-impl Sharing for LightPathsOnly {
-    #[inline(always)]
-    fn is_shared(self) -> bool {
-        false
-    }
-}
-
-/// [`Sharing`] chosen at run time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum AnySharing {
-    /// [`Combined`].
-    Combined,
-    /// [`LightPathsOnly`].
-    LightPathsOnly,
-}
-
-impl Sharing for AnySharing {
-    #[inline(always)]
-    fn is_shared(self) -> bool {
-        self == Self::Combined
-    }
 }
 
 /// The same call for whichever end paths begin at.
@@ -129,7 +86,7 @@ where
     }
 
     #[inline(always)]
-    fn has_light_paths(&self) -> Option<PathOrigin> {
+    fn path_origin(&self) -> Option<PathOrigin> {
         Some(self.settings.origin)
     }
 

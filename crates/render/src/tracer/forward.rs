@@ -19,8 +19,8 @@ macro_rules! forward {
         }
 
         #[inline(always)]
-        fn has_light_paths(&self) -> Option<$crate::tracer::PathOrigin> {
-            self.tracer.has_light_paths()
+        fn path_origin(&self) -> Option<$crate::tracer::PathOrigin> {
+            self.tracer.path_origin()
         }
     };
     (@ wavelength) => {

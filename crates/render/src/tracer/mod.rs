@@ -29,16 +29,18 @@ mod nesting;
 mod next_event;
 mod passage;
 mod path;
+mod path_origin;
 mod path_state;
 mod rivals;
 mod settings;
+mod sharing;
 mod step;
 mod vertex_pairs;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use any::{AnyTracer, Between, MatterNode, MediaNode, TracerNode};
 pub use any_paths::AnyPaths;
-pub use bidirectional::{AnySharing, Bidirectional, Combined, LightPathsOnly, Sharing};
+pub use bidirectional::Bidirectional;
 pub use cost_map::CostMap;
 pub use crossing::Crossing;
 pub use debug::{Debug, DebugView};
@@ -52,8 +54,10 @@ pub use mis::{AnyMis, BalanceHeuristic, BsdfOnly, LightsOnly, Mis, PowerHeuristi
 pub use nesting::{AnyNesting, Beside, Nested, Nesting};
 pub use passage::{Passage, Scattering};
 pub use path::PathTracer;
+pub use path_origin::PathOrigin;
 pub use path_state::{MAX_DEPTH, MAX_MEDIA, PathState};
-pub use settings::{PathOrigin, Settings, TracerOptions};
+pub use settings::{Settings, TracerOptions};
+pub use sharing::{AnySharing, Combined, LightPathsOnly, Sharing};
 pub use step::{Step, shade};
 
 use crate::bsdf::Bsdf;
@@ -181,7 +185,7 @@ impl<D: Domain, B> Vertex<'_, D, B> {
 /// What is computed along rays.
 pub trait Tracer<D: Domain> {
     /// The path that begins sample `sample` of the pixel at (x, y): with a camera ray, or, of tracers that [have light
-    /// paths](Tracer::has_light_paths), with what leaves a light.
+    /// paths](Tracer::path_origin), with what leaves a light.
     fn on_emit<C: Camera<D>, L: LightKinds<D> + ?Sized>(
         &self,
         d: D,
@@ -194,7 +198,7 @@ pub trait Tracer<D: Domain> {
     /// Where the paths of this tracer begin, if a sample of the image is a path from the camera and one from a light for each
     /// pixel, which adds to any pixel ([`Shadow::pixel`]).
     #[inline(always)]
-    fn has_light_paths(&self) -> Option<PathOrigin> {
+    fn path_origin(&self) -> Option<PathOrigin> {
         None
     }
 

@@ -1,22 +1,12 @@
 //! What a render tells its tracer: data, so that no option compiles anything anew.
 
 use super::camera_pairs::{FILM, LENS};
+use super::path_origin::PathOrigin;
 use super::{MAX_DEPTH, Path, PathState};
 use crate::camera::Camera;
 use crate::domain::Domain;
 use crate::math::Vec3;
 use crate::sampler::{SampleKey, Sampler};
-
-/// Where paths begin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u32)]
-pub enum PathOrigin {
-    /// At the camera.
-    #[default]
-    Camera,
-    /// At lights. Only of tracers that [have light paths](super::Tracer::has_light_paths).
-    Lights,
-}
 
 /// Options of a tracer, as a device gets them.
 #[derive(Clone, Copy, Debug, PartialEq)]
