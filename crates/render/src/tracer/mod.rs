@@ -79,7 +79,7 @@ pub struct Path<D: Domain> {
     /// Density, per steradian, with which the BSDF proposed the ray's direction; 0 for camera rays and delta
     /// lobes, which light sampling cannot find.
     pub pdf: D::F,
-    /// What [rival strategies](rivals) are worth that find the same light; 0 in tracers that have none. Of the first ray of a light
+    /// What rival strategies are worth that find the same light (`tracer/rivals.rs`); 0 in tracers that have none. Of the first ray of a light
     /// path, [`Emission::found`](crate::light::Emission::found), with [`Emission::spread`](crate::light::Emission::spread) for `pdf`,
     /// negative if it comes from infinitely far away.
     pub rivals: D::F,
