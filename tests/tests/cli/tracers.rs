@@ -79,7 +79,7 @@ fn unknown_layers_and_tracers_are_bad_usage() {
             &["--aov", "beauty"][..],
             &["beauty", "albedo", "position"][..],
         ),
-        (&["--tracer", "light"], &["light", "ao", "debug"]),
+        (&["--tracer", "photons"], &["light", "ao", "debug"]),
         (&["--tracer", "ao", "--reach", "-1"], &["--reach"]),
         (&["--tracer", "debug", "--view", "x"], &["normals", "cost"]),
     ] {
