@@ -72,7 +72,7 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// Sets the channels of layers in the lanes whose bit is set. Splats have none.
+    /// Sets the channels of layers in the lanes whose bit is set.
     #[inline(always)]
     pub(crate) fn set<D: Lanes>(&mut self, d: D, bits: u32, sample: D::U, channels: &[D::F]) {
         let Self::Sums {
@@ -80,7 +80,7 @@ impl<'a> Samples<'a> {
             stride,
         } = self
         else {
-            return;
+            unreachable!("light paths fill no layers");
         };
         let mut indices = [0; MAX_LANES];
         d.store_word(sample, &mut indices[..D::LANES]);

@@ -1,4 +1,4 @@
-//! A camera chosen at run time, for tracers that look for it.
+//! A camera chosen at run time: the interpreted renderer's.
 
 use super::CameraNode;
 use crate::camera::{Camera, Orthographic, Panorama, Perspective, Sight, ThinLens};

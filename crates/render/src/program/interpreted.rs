@@ -4,7 +4,6 @@ use super::any_camera::AnyCamera;
 use super::boxed::Boxing;
 use super::{BoxedLights, BoxedMaterial, Structure};
 use crate::alpha::{AlphaTest, Candidate, alpha_test};
-use crate::camera::Camera;
 use crate::domain::{Buffers, Domain, Scalar};
 use crate::layer::Layers;
 use crate::renderer::{MaterialVisitor, Renderer};
@@ -18,8 +17,7 @@ pub struct Interpreted<'a, D: Domain> {
     materials: Vec<BoxedMaterial<'a, D>>,
     alpha_tests: Vec<Option<Box<dyn AlphaTest<Scalar<'a>> + Send + Sync + 'a>>>,
     lights: BoxedLights<'a, D>,
-    camera: Box<dyn Camera<D> + Send + Sync + 'a>,
-    any_camera: AnyCamera,
+    camera: AnyCamera,
     sampler: AnySampler,
     tracer: TracerNode,
     between: Between,
@@ -36,8 +34,7 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
             materials: structure.programs.iter().map(BoxedMaterial::new).collect(),
             alpha_tests: alpha_tests.collect(),
             lights: BoxedLights::new(structure),
-            camera: structure.camera.boxed(),
-            any_camera: AnyCamera::from(&structure.camera),
+            camera: AnyCamera::from(&structure.camera),
             sampler: structure.sampler,
             tracer: structure.tracer,
             between: structure.between,
@@ -47,7 +44,7 @@ impl<'a, D: Domain + 'a> Interpreted<'a, D> {
 }
 
 impl<'a, D: Domain + 'a> Renderer<D> for Interpreted<'a, D> {
-    type Camera = Box<dyn Camera<D> + Send + Sync + 'a>;
+    type Camera = AnyCamera;
     type Tracer = Layered<AnyTracer<D, AnySampler, AnyCamera>, Layers>;
     type Lights = BoxedLights<'a, D>;
 
@@ -58,7 +55,7 @@ impl<'a, D: Domain + 'a> Renderer<D> for Interpreted<'a, D> {
         Layered {
             tracer: self
                 .tracer
-                .tracer(self.between, self.sampler, settings, self.any_camera),
+                .tracer(self.between, self.sampler, settings, self.camera),
             layers: self.layers,
         }
     }

@@ -1,9 +1,10 @@
 //! A tracer chosen at run time.
 
+use super::forward::forward;
 use super::{
     Absorption, AbsorptionAndScattering, AmbientOcclusion, AnyMatter, AnyMis, AnyNesting, AnyPaths,
-    AnySharing, Bidirectional, Bounce, CostMap, Crossing, Debug, DebugView, Dispersing, InMedia,
-    Passage, Path, PathOrigin, PathTracer, Settings, Shadow, Tracer, Vertex,
+    AnySharing, Bidirectional, Bounce, CostMap, Debug, DebugView, Dispersing, InMedia, Path,
+    PathTracer, Settings, Shadow, Tracer, Vertex,
 };
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
@@ -11,7 +12,7 @@ use crate::domain::Domain;
 use crate::light::LightKinds;
 use crate::math::Color;
 use crate::sampler::Sampler;
-use crate::surface::{Cone, Surface};
+use crate::surface::Surface;
 
 /// Which tracer a renderer has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -169,7 +170,7 @@ pub enum AnyTracer<D: Domain, S, C> {
 
 /// The same call for whichever tracer it is.
 macro_rules! each {
-    ($any:expr, $tracer:ident => $call:expr) => {
+    ($any:expr $(, $d:ident)?; $tracer:ident => $call:expr) => {
         match $any {
             AnyTracer::Paths($tracer) => $call,
             AnyTracer::InMedia($tracer) => $call,
@@ -187,98 +188,9 @@ where
     S: Sampler<D> + Copy,
     C: Camera<D> + Copy,
 {
-    #[inline(always)]
-    fn on_emit<K: Camera<D>, L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        camera: &K,
-        lights: &L,
-        pixel: [D::U; 2],
-        sample: D::U,
-    ) -> Path<D> {
-        each!(self, tracer => tracer.on_emit(d, camera, lights, pixel, sample))
-    }
-
-    #[inline(always)]
-    fn path_origin(&self) -> Option<PathOrigin> {
-        each!(self, tracer => tracer.path_origin())
-    }
-
-    #[inline(always)]
-    fn wavelength(&self, d: D, path: &Path<D>) -> Option<D::F> {
-        each!(self, tracer => tracer.wavelength(d, path))
-    }
-
-    #[inline(always)]
-    fn cone(&self, d: D, path: &Path<D>) -> Option<Cone<D>> {
-        each!(self, tracer => tracer.cone(d, path))
-    }
-
-    #[inline(always)]
-    fn crossing(
-        &self,
-        d: D,
-        path: &Path<D>,
-        surface: &Surface<D>,
-        interior: D::U,
-    ) -> Option<Crossing<D>> {
-        each!(self, tracer => tracer.crossing(d, path, surface, interior))
-    }
-
-    #[inline(always)]
-    fn passage(&self, d: D, path: &Path<D>, surface: &Surface<D>) -> Option<Passage<D>> {
-        each!(self, tracer => tracer.passage(d, path, surface))
-    }
-
-    #[inline(always)]
-    fn on_hit<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-        lights: &L,
-    ) -> Option<Color<D::F>> {
-        each!(self, tracer => tracer.on_hit(d, path, vertex, lights))
-    }
-
-    #[inline(always)]
-    fn on_miss<L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        lights: &L,
-    ) -> Option<Color<D::F>> {
-        each!(self, tracer => tracer.on_miss(d, path, lights))
-    }
-
-    #[inline(always)]
-    fn goes_on(&self, d: D, path: &Path<D>) -> D::M {
-        each!(self, tracer => tracer.goes_on(d, path))
-    }
-
-    #[inline(always)]
-    fn on_shadow<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-        lights: &L,
-    ) -> Option<Shadow<D>> {
-        each!(self, tracer => tracer.on_shadow(d, path, vertex, lights))
-    }
-
-    #[inline(always)]
-    fn on_bounce<B: Bsdf<D>>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-    ) -> Option<Bounce<D>> {
-        each!(self, tracer => tracer.on_bounce(d, path, vertex))
-    }
-
-    #[inline(always)]
-    fn cost_map(&self) -> Option<CostMap> {
-        each!(self, tracer => tracer.cost_map())
-    }
+    forward!(
+        through each;
+        on_emit, path_origin, wavelength, cone, crossing, passage, on_hit, on_miss, goes_on, on_shadow,
+        on_bounce, cost_map
+    );
 }

@@ -1,6 +1,7 @@
 //! Paths from both ends.
 
 use super::camera_paths::CameraPaths;
+use super::forward::forward;
 use super::light_paths::LightPaths;
 use super::{
     Bounce, Path, PathOrigin, PathTracer, PowerHeuristic, Settings, Shadow, Sharing, Tracer, Vertex,
@@ -11,7 +12,6 @@ use crate::domain::Domain;
 use crate::light::LightKinds;
 use crate::math::Color;
 use crate::sampler::Sampler;
-use crate::surface::Cone;
 
 /// A sample is a path from the camera for each pixel, and a path from a light for each, which adds to any pixel. Of bidirectional
 /// path tracing (Veach 1997, chapter 10) these are the strategies that connect no two vertices within a path: light paths find
@@ -33,7 +33,7 @@ pub struct Bidirectional<D: Domain, S, C, W> {
 
 /// The same call for whichever end paths begin at.
 macro_rules! from_either_end {
-    ($both:expr, $paths:ident => $call:expr) => {{
+    ($both:expr, $d:ident; $paths:ident => $call:expr) => {{
         let Bidirectional {
             sampler,
             settings,
@@ -73,72 +73,13 @@ where
     C: Camera<D> + Copy,
     W: Sharing,
 {
-    #[inline(always)]
-    fn on_emit<K: Camera<D>, L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        camera: &K,
-        lights: &L,
-        pixel: [D::U; 2],
-        sample: D::U,
-    ) -> Path<D> {
-        from_either_end!(self, paths => paths.on_emit(d, camera, lights, pixel, sample))
-    }
+    forward!(
+        through from_either_end;
+        on_emit, cone, on_hit, on_miss, goes_on, on_shadow, on_bounce
+    );
 
     #[inline(always)]
     fn path_origin(&self) -> Option<PathOrigin> {
         Some(self.settings.origin)
-    }
-
-    #[inline(always)]
-    fn cone(&self, d: D, path: &Path<D>) -> Option<Cone<D>> {
-        from_either_end!(self, paths => paths.cone(d, path))
-    }
-
-    #[inline(always)]
-    fn on_hit<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-        lights: &L,
-    ) -> Option<Color<D::F>> {
-        from_either_end!(self, paths => paths.on_hit(d, path, vertex, lights))
-    }
-
-    #[inline(always)]
-    fn on_miss<L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        lights: &L,
-    ) -> Option<Color<D::F>> {
-        from_either_end!(self, paths => paths.on_miss(d, path, lights))
-    }
-
-    #[inline(always)]
-    fn goes_on(&self, d: D, path: &Path<D>) -> D::M {
-        from_either_end!(self, paths => paths.goes_on(d, path))
-    }
-
-    #[inline(always)]
-    fn on_shadow<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-        lights: &L,
-    ) -> Option<Shadow<D>> {
-        from_either_end!(self, paths => paths.on_shadow(d, path, vertex, lights))
-    }
-
-    #[inline(always)]
-    fn on_bounce<B: Bsdf<D>>(
-        &self,
-        d: D,
-        path: &Path<D>,
-        vertex: &Vertex<'_, D, B>,
-    ) -> Option<Bounce<D>> {
-        from_either_end!(self, paths => paths.on_bounce(d, path, vertex))
     }
 }

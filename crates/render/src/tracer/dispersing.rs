@@ -46,7 +46,16 @@ impl<T, S> Dispersing<T, S> {
 
 impl<D: Domain, T: Tracer<D>, S: Sampler<D>> Tracer<D> for Dispersing<T, S> {
     forward!(
-        on_emit, cone, crossing, passage, on_hit, on_miss, goes_on, layers, cost_map
+        on_emit,
+        path_origin,
+        cone,
+        crossing,
+        passage,
+        on_hit,
+        on_miss,
+        goes_on,
+        layers,
+        cost_map
     );
 
     #[inline(always)]

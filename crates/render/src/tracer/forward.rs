@@ -1,41 +1,46 @@
-//! Tracers around others: what they leave to the tracer within.
+//! Tracers around others, and tracers of several kinds: what they leave to the tracer within.
 
-/// Methods of [`Tracer`](super::Tracer) that call those of the field `tracer`.
+/// Methods of [`Tracer`](super::Tracer) that call those of the field `tracer`, or, `through` a macro, those of the tracer that it finds
+/// in `self`: it is given `self`, mostly `d`, a name for the tracer, and the call.
 macro_rules! forward {
-    ($($method:ident),* $(,)?) => {
-        $($crate::tracer::forward::forward!(@ $method);)*
+    (through $through:ident; $($method:ident),* $(,)?) => {
+        $($crate::tracer::forward::forward!(@ [$through] $method);)*
     };
-    (@ on_emit) => {
+    ($($method:ident),* $(,)?) => {
+        $($crate::tracer::forward::forward!(@ [$crate::tracer::forward::to_field] $method);)*
+    };
+    (@ [$($through:tt)*] on_emit) => {
         #[inline(always)]
-        fn on_emit<C: Camera<D>, L: LightKinds<D> + ?Sized>(
+        fn on_emit<K: Camera<D>, L: LightKinds<D> + ?Sized>(
             &self,
             d: D,
-            camera: &C,
+            camera: &K,
             lights: &L,
             pixel: [D::U; 2],
             sample: D::U,
         ) -> Path<D> {
-            self.tracer.on_emit(d, camera, lights, pixel, sample)
+            $($through)*!(self, d; tracer => tracer.on_emit(d, camera, lights, pixel, sample))
         }
-
+    };
+    (@ [$($through:tt)*] path_origin) => {
         #[inline(always)]
         fn path_origin(&self) -> Option<$crate::tracer::PathOrigin> {
-            self.tracer.path_origin()
+            $($through)*!(self; tracer => tracer.path_origin())
         }
     };
-    (@ wavelength) => {
+    (@ [$($through:tt)*] wavelength) => {
         #[inline(always)]
         fn wavelength(&self, d: D, path: &Path<D>) -> Option<D::F> {
-            self.tracer.wavelength(d, path)
+            $($through)*!(self, d; tracer => tracer.wavelength(d, path))
         }
     };
-    (@ cone) => {
+    (@ [$($through:tt)*] cone) => {
         #[inline(always)]
         fn cone(&self, d: D, path: &Path<D>) -> Option<$crate::surface::Cone<D>> {
-            self.tracer.cone(d, path)
+            $($through)*!(self, d; tracer => tracer.cone(d, path))
         }
     };
-    (@ crossing) => {
+    (@ [$($through:tt)*] crossing) => {
         #[inline(always)]
         fn crossing(
             &self,
@@ -44,10 +49,10 @@ macro_rules! forward {
             surface: &Surface<D>,
             interior: D::U,
         ) -> Option<$crate::tracer::Crossing<D>> {
-            self.tracer.crossing(d, path, surface, interior)
+            $($through)*!(self, d; tracer => tracer.crossing(d, path, surface, interior))
         }
     };
-    (@ passage) => {
+    (@ [$($through:tt)*] passage) => {
         #[inline(always)]
         fn passage(
             &self,
@@ -55,10 +60,10 @@ macro_rules! forward {
             path: &Path<D>,
             surface: &Surface<D>,
         ) -> Option<$crate::tracer::Passage<D>> {
-            self.tracer.passage(d, path, surface)
+            $($through)*!(self, d; tracer => tracer.passage(d, path, surface))
         }
     };
-    (@ on_hit) => {
+    (@ [$($through:tt)*] on_hit) => {
         #[inline(always)]
         fn on_hit<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
             &self,
@@ -67,10 +72,10 @@ macro_rules! forward {
             vertex: &Vertex<'_, D, B>,
             lights: &L,
         ) -> Option<Color<D::F>> {
-            self.tracer.on_hit(d, path, vertex, lights)
+            $($through)*!(self, d; tracer => tracer.on_hit(d, path, vertex, lights))
         }
     };
-    (@ on_miss) => {
+    (@ [$($through:tt)*] on_miss) => {
         #[inline(always)]
         fn on_miss<L: LightKinds<D> + ?Sized>(
             &self,
@@ -78,16 +83,16 @@ macro_rules! forward {
             path: &Path<D>,
             lights: &L,
         ) -> Option<Color<D::F>> {
-            self.tracer.on_miss(d, path, lights)
+            $($through)*!(self, d; tracer => tracer.on_miss(d, path, lights))
         }
     };
-    (@ goes_on) => {
+    (@ [$($through:tt)*] goes_on) => {
         #[inline(always)]
         fn goes_on(&self, d: D, path: &Path<D>) -> D::M {
-            self.tracer.goes_on(d, path)
+            $($through)*!(self, d; tracer => tracer.goes_on(d, path))
         }
     };
-    (@ on_shadow) => {
+    (@ [$($through:tt)*] on_shadow) => {
         #[inline(always)]
         fn on_shadow<B: Bsdf<D>, L: LightKinds<D> + ?Sized>(
             &self,
@@ -96,10 +101,10 @@ macro_rules! forward {
             vertex: &Vertex<'_, D, B>,
             lights: &L,
         ) -> Option<Shadow<D>> {
-            self.tracer.on_shadow(d, path, vertex, lights)
+            $($through)*!(self, d; tracer => tracer.on_shadow(d, path, vertex, lights))
         }
     };
-    (@ on_bounce) => {
+    (@ [$($through:tt)*] on_bounce) => {
         #[inline(always)]
         fn on_bounce<B: Bsdf<D>>(
             &self,
@@ -107,21 +112,29 @@ macro_rules! forward {
             path: &Path<D>,
             vertex: &Vertex<'_, D, B>,
         ) -> Option<Bounce<D>> {
-            self.tracer.on_bounce(d, path, vertex)
+            $($through)*!(self, d; tracer => tracer.on_bounce(d, path, vertex))
         }
     };
-    (@ cost_map) => {
+    (@ [$($through:tt)*] cost_map) => {
         #[inline(always)]
         fn cost_map(&self) -> Option<CostMap> {
-            self.tracer.cost_map()
+            $($through)*!(self; tracer => tracer.cost_map())
         }
     };
-    (@ layers) => {
+    (@ [$($through:tt)*] layers) => {
         #[inline(always)]
         fn layers(&self) -> Layers {
-            self.tracer.layers()
+            $($through)*!(self; tracer => tracer.layers())
         }
     };
 }
 
-pub(super) use forward;
+/// The tracer in the field `tracer`.
+macro_rules! to_field {
+    ($of:expr $(, $d:ident)?; $tracer:ident => $call:expr) => {{
+        let $tracer = &$of.tracer;
+        $call
+    }};
+}
+
+pub(super) use {forward, to_field};

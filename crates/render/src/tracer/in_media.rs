@@ -79,7 +79,14 @@ fn only_at_the_surface<D: Domain, B>(vertex: &Vertex<'_, D, B>) -> Option<D::M> 
 
 impl<D: Domain, T: Tracer<D>, N: Nesting<D>, M: Matter<D>> Tracer<D> for InMedia<T, N, M> {
     forward!(
-        on_emit, wavelength, cone, on_miss, goes_on, layers, cost_map
+        on_emit,
+        path_origin,
+        wavelength,
+        cone,
+        on_miss,
+        goes_on,
+        layers,
+        cost_map
     );
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! A tracer that fills layers beside radiance.
 
 use super::forward::forward;
-use super::{Bounce, CostMap, Path, Shadow, Tracer, Vertex};
+use super::{Bounce, CostMap, Path, PathOrigin, Shadow, Tracer, Vertex};
 use crate::bsdf::Bsdf;
 use crate::camera::Camera;
 use crate::domain::Domain;
@@ -45,12 +45,26 @@ pub struct Layered<T, L> {
 
 impl<D: Domain, T: Tracer<D>, S: LayerSet> Tracer<D> for Layered<T, S> {
     forward!(
-        on_emit, wavelength, cone, crossing, passage, on_hit, on_miss, goes_on, on_shadow,
-        on_bounce, cost_map
+        on_emit,
+        path_origin,
+        wavelength,
+        cone,
+        crossing,
+        passage,
+        on_hit,
+        on_miss,
+        goes_on,
+        on_shadow,
+        on_bounce,
+        cost_map
     );
 
+    /// Those of paths from the camera: what a light path meets is in no pixel yet.
     #[inline(always)]
     fn layers(&self) -> Layers {
-        self.layers.layers()
+        match self.tracer.path_origin() {
+            Some(PathOrigin::Lights) => Layers::NONE,
+            None | Some(PathOrigin::Camera) => self.layers.layers(),
+        }
     }
 }
