@@ -233,6 +233,7 @@ const COMMON: &[&str] = &[
     "render/src/tracer/settings.rs",
     "render/src/tracer/step.rs",
     "render/src/tracer/vertex_pairs.rs",
+    "render/src/tracer/way_on.rs",
     "render/src/triangle.rs",
 ];
 

@@ -297,3 +297,65 @@ impl<D: Domain> LightKinds<D> for [Box<dyn LightKind<D> + Send + Sync + '_>] {
         either_density(d, kind, first, rest)
     }
 }
+
+/// Methods of [`LightKinds`] that are those of the list in a field, whatever picks from it.
+macro_rules! of_list {
+    ($($list:tt)*) => {
+        #[inline(always)]
+        fn is_empty(&self) -> bool {
+            self.$($list)*.is_empty()
+        }
+        #[inline(always)]
+        fn takes_three(&self) -> bool {
+            self.$($list)*.takes_three()
+        }
+        #[inline(always)]
+        fn sample(
+            &self,
+            d: D,
+            kind: $crate::light::KindIndex<D::U>,
+            record: D::U,
+            from: Vec3<D::F>,
+            u: [D::F; 3],
+        ) -> $crate::light::LightSample<D> {
+            self.$($list)*.sample(d, kind, record, from, u)
+        }
+        #[inline(always)]
+        fn emit(
+            &self,
+            d: D,
+            kind: $crate::light::KindIndex<D::U>,
+            record: D::U,
+            u: $crate::light::EmissionNumbers<D::F>,
+        ) -> $crate::light::Emission<D> {
+            self.$($list)*.emit(d, kind, record, u)
+        }
+        #[inline(always)]
+        fn background(&self, d: D, dir: Vec3<D::F>) -> Option<$crate::light::Background<D>> {
+            self.$($list)*.background(d, dir)
+        }
+        #[inline(always)]
+        fn density(
+            &self,
+            d: D,
+            kind: $crate::light::KindIndex<D::U>,
+            record: D::U,
+            ray: &$crate::surface::PathRay<D>,
+            seen: &$crate::surface::Surface<D>,
+        ) -> Option<D::F> {
+            self.$($list)*.density(d, kind, record, ray, seen)
+        }
+        #[inline(always)]
+        fn spread(
+            &self,
+            d: D,
+            kind: $crate::light::KindIndex<D::U>,
+            record: D::U,
+            seen: &$crate::surface::Surface<D>,
+        ) -> Option<D::F> {
+            self.$($list)*.spread(d, kind, record, seen)
+        }
+    };
+}
+
+pub(crate) use of_list;

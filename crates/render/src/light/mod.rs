@@ -24,6 +24,7 @@ pub use area_by_solid_angle::{AreaBySolidAngle, AreaBySolidAngleRecord};
 pub use by_tree::ByTree;
 pub use emission::{Emission, EmissionNumbers, NOT_FOUND, SceneSphereRecord};
 pub use environment::{Environment, EnvironmentHeader, set_environment};
+pub(crate) use kinds::of_list;
 pub use kinds::{KindIndex, LightKinds};
 pub use pick::{
     LIGHT_WORDS, LightRecord, Pick, PickHeader, pick, pick_probability, push_light, set_picks,

@@ -3,9 +3,10 @@
 
 use super::camera_pairs::{EMISSION_DIRECTION, EMISSION_PLACE, EMISSION_TEXEL};
 use super::rivals::{Reversed, Turn, carried_on, cosine, reversed, shared};
-use super::vertex_pairs::{BSDF_DIRECTION, LIGHT, LOBE_AND_ROULETTE, pair};
+use super::vertex_pairs::{LIGHT, pair};
+use super::way_on::WayOn;
 use super::{Bounce, Path, PathState, Settings, Shadow, Sharing, Tracer, Vertex, consistent};
-use crate::bsdf::{Bsdf, BsdfSample};
+use crate::bsdf::Bsdf;
 use crate::camera::Camera;
 use crate::domain::{Bundle, Domain};
 use crate::light::{self, EmissionNumbers, LightKinds};
@@ -89,14 +90,14 @@ impl<D: Domain, S: Sampler<D>, C: Camera<D>, W: Sharing> LightPaths<D, S, C, W> 
 
     /// What a sampled direction leaves of flux.
     #[inline(always)]
-    fn scattered<B: Bsdf<D>>(
-        d: D,
-        vertex: &Vertex<'_, D, B>,
-        wo: Vec3<D::F>,
-        sample: &BsdfSample<D>,
-        out: Vec3<D::F>,
-    ) -> Scattered<D> {
+    fn scattered<B: Bsdf<D>>(d: D, vertex: &Vertex<'_, D, B>, way: &WayOn<D>) -> Scattered<D> {
         let Vertex { surface, bsdf, .. } = *vertex;
+        let WayOn {
+            wo,
+            sample,
+            dir: out,
+            ..
+        } = *way;
         let one = d.lit(1.0);
         let slant = Self::slant(d, vertex, out);
         let kind = bsdf.kind();
@@ -265,26 +266,13 @@ impl<D: Domain, S: Sampler<D>, C: Camera<D>, W: Sharing> Tracer<D> for LightPath
         path: &Path<D>,
         vertex: &Vertex<'_, D, B>,
     ) -> Option<Bounce<D>> {
-        let Vertex { surface, bsdf, .. } = *vertex;
-        let kind = bsdf.kind();
-        if !(kind.scatters || kind.delta) {
-            return None;
-        }
-        let direction = pair(d, &self.sampler, path, BSDF_DIRECTION);
-        let [lobe, roulette] = pair(d, &self.sampler, path, LOBE_AND_ROULETTE);
-        let wo = surface.frame.to_local(d, vertex.wo);
-        let sample = bsdf.sample(d, surface, wo, [direction[0], direction[1], lobe]);
-        let dir = surface.frame.to_world(sample.wi).normalize(d);
-        let scattered = Self::scattered(d, vertex, wo, &sample, dir);
-
-        let one = d.lit(1.0);
+        let way = WayOn::new(d, &self.sampler, path, vertex)?;
+        let WayOn { sample, dir, .. } = way;
+        let surface = vertex.surface;
+        let scattered = Self::scattered(d, vertex, &way);
         // What counts is what this vertex leaves: flux has no scale of its own.
-        let left = scattered.weight.max_component(d);
-        let early = d.lt_u(path.state.depth(d), self.settings.roulette_from);
-        let most = if vertex.is_in_medium { 1.0 } else { 0.95 };
-        let survival = d.select(early, one, d.min(left, d.lit(most)));
-        let alive = d.lt(d.lit(0.0), left) & (early | d.lt(roulette, survival));
-        let scale = one / d.select(alive, survival, one);
+        let worth = scattered.weight.max_component(d);
+        let (alive, scale) = way.survives(d, &self.settings, path, vertex, worth);
         let onward = self.onward(d, path, vertex, dir, (scattered.back, sample.delta));
         Some(Bounce {
             path: Path {

@@ -36,6 +36,7 @@ mod settings;
 mod sharing;
 mod step;
 mod vertex_pairs;
+mod way_on;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use any::{AnyTracer, Between, MatterNode, MediaNode, TracerNode};

@@ -1,7 +1,8 @@
 //! The path tracer: unidirectional, with next-event estimation, multiple importance sampling and Russian roulette.
 
 use super::next_event::NextEvent;
-use super::vertex_pairs::{BSDF_DIRECTION, LOBE_AND_ROULETTE, pair, pair_of_levels};
+use super::vertex_pairs::pair_of_levels;
+use super::way_on::WayOn;
 use super::{Bounce, Mis, Path, PowerHeuristic, Settings, Shadow, Tracer, Vertex, consistent};
 use crate::bsdf::Bsdf;
 use crate::camera::{Camera, pixel_cone};
@@ -126,32 +127,17 @@ impl<D: Domain, S: Sampler<D>, M: Mis<D>> Tracer<D> for PathTracer<D, S, M> {
         path: &Path<D>,
         vertex: &Vertex<'_, D, B>,
     ) -> Option<Bounce<D>> {
+        let way = WayOn::new(d, &self.sampler, path, vertex)?;
         let Vertex { surface, bsdf, .. } = *vertex;
-        let kind = bsdf.kind();
-        if !(kind.scatters || kind.delta) {
-            return None;
-        }
-        let direction = pair(d, &self.sampler, path, BSDF_DIRECTION);
-        let [lobe, roulette] = pair(d, &self.sampler, path, LOBE_AND_ROULETTE);
-        let wo = surface.frame.to_local(d, vertex.wo);
-        let sample = bsdf.sample(d, surface, wo, [direction[0], direction[1], lobe]);
-        let dir = surface.frame.to_world(sample.wi).normalize(d);
-
+        let WayOn { sample, dir, .. } = way;
         let throughput = path.throughput * sample.weight;
         // What paths lose on their way into glass they gain on their way out: it is no reason to end there (PBRT 4, 14.5.4).
         let outside = match bsdf.radiance_scale(d, surface, sample.wi) {
             Some(scale) => throughput.scale(scale),
             None => throughput,
         };
-        let largest = outside.max_component(d);
-        let early = d.lt_u(path.state.depth(d), self.settings.roulette_from);
-        let one = d.lit(1.0);
-        // Between surfaces that lose nothing a path may go on for ever. Through a medium it gets out, though after many vertices,
-        // each of which would make it more worth and less likely.
-        let most = if vertex.is_in_medium { 1.0 } else { 0.95 };
-        let survival = d.select(early, one, d.min(largest, d.lit(most)));
-        let alive = d.lt(d.lit(0.0), largest) & (early | d.lt(roulette, survival));
-        let scale = one / d.select(alive, survival, one);
+        let worth = outside.max_component(d);
+        let (alive, scale) = way.survives(d, &self.settings, path, vertex, worth);
         Some(Bounce {
             path: Path {
                 ray: PathRay::unbounded(d, surface.spawn(d, dir), dir),
