@@ -6,8 +6,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use residual_render::film::{Film, SampleSet, TILE_SIZE, TilePass, TileSamples};
-use residual_render::layer::Layers;
+use residual_render::film::{Film, SampleSet, TILE_SIZE, TilePass, TileRect, TileSamples};
 use residual_render::passes::{
     Counters, MAX_PASS, Pass, Progress, RenderOptions, RenderReport, render_passes,
 };
@@ -86,10 +85,10 @@ impl CpuDevice {
         options: &RenderOptions,
         pass: Pass,
     ) -> (Splats, Counters) {
-        let tiles = Film::new(options.size[0], options.size[1], TILE_SIZE, Layers::NONE)
-            .rects()
+        // Tiles of a size of their own: in their order splats are added, and how a film is cut must not show.
+        let tiles: Vec<_> = TileRect::tiles(options.size, TILE_SIZE)
             .map(|rect| TileSamples { rect, pass })
-            .collect::<Vec<_>>();
+            .collect();
         let lists: Vec<_> = self.pool.install(|| {
             let jobs = tiles.par_iter().map(|tile| {
                 let set = SampleSet::First;
@@ -138,7 +137,7 @@ impl CpuDevice {
             let mut left = pass;
             while left.count > 0 {
                 let pose = pose_of(left.first);
-                let (now, later) = split(left, |sample| pose_of(sample) == pose);
+                let (now, later) = left.split_while(|sample| pose_of(sample) == pose);
                 counters += self.pass(renderer, &views(pose), options, film, now);
                 left = later;
             }
@@ -155,7 +154,7 @@ impl CpuDevice {
                 .iter_mut()
                 .filter(|tile| pose_of(tile.pass.first) == pose)
                 .map(|tile| {
-                    let (now, later) = split(tile.pass, |sample| pose_of(sample) == pose);
+                    let (now, later) = tile.pass.split_while(|sample| pose_of(sample) == pose);
                     tile.pass = later;
                     TilePass {
                         set: tile.set,
@@ -260,18 +259,6 @@ impl CpuDevice {
 
 /// About as many light paths have their splats in memory at a time.
 const LIGHT_PATHS: u64 = 1 << 20;
-
-/// The first samples of a pass, as long as they are of some kind, and the others.
-fn split(pass: Pass, is_of_kind: impl Fn(u32) -> bool) -> (Pass, Pass) {
-    let Pass { first, count } = pass;
-    let samples = first..first + count;
-    let now = samples.take_while(|&sample| is_of_kind(sample)).count() as u32;
-    let later = Pass {
-        first: first + now,
-        count: count - now,
-    };
-    (Pass { first, count: now }, later)
-}
 
 /// A pass of an image of this size in parts of so few samples.
 fn parts(pass: Pass, size: [u32; 2]) -> impl Iterator<Item = Pass> {

@@ -167,12 +167,11 @@ impl<'a> GpuPasses<'a> {
         let mut counters = Counters::default();
         let mut left = pass;
         while left.count > 0 {
-            let (pose, now) = self.driver.poses.first_of(left);
+            let poses = self.driver.poses;
+            let pose = poses.pose_of(left.first);
+            let (now, later) = left.split_while(|sample| poses.pose_of(sample) == pose);
             counters += self.in_pose(renderer, pose, film, now)?;
-            left = Pass {
-                first: now.first + now.count,
-                count: left.count - now.count,
-            };
+            left = later;
         }
         Ok(counters)
     }

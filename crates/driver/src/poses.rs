@@ -57,15 +57,6 @@ impl<'a> Poses<'a> {
         })
     }
 
-    /// The pose that the first samples of a pass see, and which they are.
-    pub fn first_of(&self, pass: Pass) -> (usize, Pass) {
-        let pose = self.pose_of(pass.first);
-        let samples = pass.first..pass.first + pass.count;
-        let same = samples.take_while(|&sample| self.pose_of(sample) == pose);
-        let count = same.count() as u32;
-        (pose, Pass { count, ..pass })
-    }
-
     /// A pose, whose hierarchy is built if it is not yet.
     pub fn view(&self, pose: usize) -> SceneView<'_> {
         let data = &self.plan.data;

@@ -74,18 +74,8 @@ struct SecondSet {
 impl Film {
     /// A black film, cut into square tiles of `tile_size` pixels (less at the right and bottom edges).
     pub fn new(width: u32, height: u32, tile_size: u32, layers: Layers) -> Self {
-        let starts = |length: u32| (0..length).step_by(tile_size as usize);
-        let tile = |x: u32, y: u32| {
-            let rect = TileRect {
-                x,
-                y,
-                width: tile_size.min(width - x),
-                height: tile_size.min(height - y),
-            };
-            FilmTile::new(rect, layers)
-        };
-        let tiles = starts(height)
-            .flat_map(|y| starts(width).map(move |x| tile(x, y)))
+        let tiles = TileRect::tiles([width, height], tile_size)
+            .map(|rect| FilmTile::new(rect, layers))
             .collect();
         Self {
             width,
@@ -165,11 +155,6 @@ impl Film {
     /// The tiles.
     pub fn tiles(&self) -> &[FilmTile] {
         &self.tiles
-    }
-
-    /// Where the tiles lie, row by row from the top.
-    pub fn rects(&self) -> impl Iterator<Item = TileRect> {
-        self.tiles.iter().map(FilmTile::rect)
     }
 
     /// The tiles, to be rendered into.
