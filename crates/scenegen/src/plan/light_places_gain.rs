@@ -74,8 +74,7 @@ pub(super) fn gain(
     data: &SceneData,
 ) -> f64 {
     let found: Vec<_> = points_on_surfaces(data)
-        .flat_map(|(at, normal)| [(at, normal), (at, -normal)])
-        .map(|(at, normal)| at_point(emitters, &pick, at, normal))
+        .flat_map(|(at, normal)| on_both_sides(emitters, &pick, at, normal))
         .filter(|[_, by_area]| by_area.mean() > 0.0)
         .collect();
     let mean = found.iter().map(|[_, by_area]| by_area.mean()).sum::<f64>() / found.len() as f64;
@@ -97,22 +96,27 @@ pub(super) fn gain(
 /// What arrives besides, in terms of the mean.
 const DIM: f64 = 0.1;
 
-/// The moments at a point on a surface with this normal, where triangles are sampled by solid angle and by area.
-fn at_point(
+/// The moments at a point on a surface with this normal, and on one with the opposite, where triangles are sampled by solid angle and
+/// by area.
+fn on_both_sides(
     emitters: &[Emitter],
     pick: &impl Fn(DVec3, usize) -> f64,
     at: DVec3,
     normal: DVec3,
-) -> [Moments; 2] {
+) -> [[Moments; 2]; 2] {
     let buffers = Buffers::EMPTY;
     let d = Precise::new(&buffers);
-    let mut moments = [Moments::default(); 2];
+    let normals = [normal, -normal];
+    let mut sides = [[Moments::default(); 2]; 2];
     for emitter in emitters {
         let corners = emitter.corners;
-        let behind = |corner: &DVec3| (*corner - at).dot(normal) <= 0.0;
+        let is_seen = normals.map(|normal| {
+            let before = |corner: &DVec3| (*corner - at).dot(normal) > 0.0;
+            corners.iter().any(before)
+        });
         let across = emitter.across();
         let height = (at - corners[0]).dot(across);
-        if corners.iter().all(behind) || (height <= 0.0 && !emitter.double_sided) {
+        if height <= 0.0 && !emitter.double_sided {
             continue;
         }
         let vector = |v: DVec3| v.to_array().into();
@@ -127,18 +131,19 @@ fn at_point(
             let place = corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v;
             let away = place - at;
             let distance = away.length();
-            let cos = away.dot(normal) / distance;
-            if cos > 0.0 {
+            let side = usize::from(away.dot(normal) <= 0.0);
+            let cos = away.dot(normals[side]) / distance;
+            if is_seen[side] && cos > 0.0 {
                 // distance² / (cosine at the light · area)
                 let by_area = distance.powi(3) * 2.0 / height.abs();
                 let part = solid_angle / f64::from(PLACES);
-                for (moments, density) in moments.iter_mut().zip([1.0 / solid_angle, by_area]) {
+                for (moments, density) in sides[side].iter_mut().zip([1.0 / solid_angle, by_area]) {
                     moments.add(part, emitter.radiance, cos, density * probability);
                 }
             }
         }
     }
-    moments
+    sides
 }
 
 /// Places spread over the unit square.
