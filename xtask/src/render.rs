@@ -1,5 +1,7 @@
 //! `cargo xtask render` on the processor.
 
+use std::convert::Infallible;
+
 use anyhow::{Context, Result, ensure};
 use residual_device_cpu::{CpuDevice, LaneCount};
 use residual_driver::poses::Poses;
@@ -7,7 +9,6 @@ use residual_driver::tiers::{Ledger, Tiers};
 use residual_frontend::note;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{DeviceReport, Preparation, Statistics};
-use std::convert::Infallible;
 
 use crate::args::RenderArgs;
 use crate::choices::{SpecializeArg, TierArg};

@@ -9,7 +9,7 @@ use residual_frontend::options::{RenderArgs, SceneDefaults};
 use residual_frontend::session::Subject;
 use residual_frontend::stats::SceneSummary;
 use residual_render::sampler::AnySampler;
-use residual_scenegen::desc::{SceneDesc, Warning, WarningKind};
+use residual_scenegen::desc::{NOTHING_MOVES, SceneDesc, Warning, WarningKind};
 use residual_scenegen::effects::Effects;
 use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
 use residual_scenegen::plan::{
@@ -187,7 +187,7 @@ pub(crate) fn load_with_description(
         plan.warnings.push(Warning {
             kind: WarningKind::Unused,
             place: "--shutter".to_owned(),
-            message: "nothing that is seen moves while the shutter is open".to_owned(),
+            message: NOTHING_MOVES.to_owned(),
         });
     }
     for warning in scene.warnings.iter().chain(&plan.warnings) {

@@ -19,8 +19,10 @@ macro_rules! compiled_scene {
             }
 
             fn has_light_paths(&self) -> bool {
-                // A scene's own constant goes before the trait's.
-                #[allow(unused_imports)]
+                #[allow(
+                    unused_imports,
+                    reason = "a scene's own constant goes before the trait's"
+                )]
                 use $crate::generated::LightPaths as _;
                 $scene::HAS_LIGHT_PATHS
             }

@@ -47,12 +47,17 @@ pub fn lanes_name(lanes: LaneCount) -> String {
     format!("{lanes:?}")
 }
 
-/// Line tables. Functions that are left out keep theirs, which begin at 0 unless the linker is told otherwise: long ones would seem to
-/// be where others are.
-const LINE_TABLES: &[&str] = &[
-    "-Cdebuginfo=line-tables-only",
-    "-Clink-arg=-Wl,-z,dead-reloc-in-nonalloc=.debug_*=0x7000000000000000",
-];
+/// Line tables. Functions that are left out keep theirs, which begin at 0 unless a linker for ELF is told otherwise: long ones would
+/// seem to be where others are.
+const LINE_TABLES: &[&str] = if cfg!(target_os = "linux") {
+    &[
+        "-Cdebuginfo=line-tables-only",
+        "-Clink-arg=-Wl,-z,dead-reloc-in-nonalloc=.debug_*=0x7000000000000000",
+    ]
+} else {
+    &["-Cdebuginfo=line-tables-only"]
+};
+
 /// Line tables would be most of a library.
 const FLAGS: &[&str] = &["-Cstrip=debuginfo"];
 

@@ -13,8 +13,7 @@ mod poses;
 
 pub use inputs::{ColorInput, NormalMap, ScalarInput, TextureUse, UvTransform};
 pub use metallic_roughness::{Attenuation, MetallicRoughness, Scattering};
-pub(crate) use poses::NOTHING_MOVES;
-pub use poses::Pose;
+pub use poses::{NOTHING_MOVES, Pose};
 
 use glam::{Affine3A, DVec3, Quat, Vec2, Vec3, Vec4};
 

@@ -96,18 +96,15 @@ impl<D: Domain> Surface<D> {
 
         // Which side a stored normal is on is the file's affair, and files err: it is turned to the side of the
         // geometric normal, which follows the winding alone.
-        let (untilted, turned) = if attributes.normals {
+        let (untilted, shading_normal, turned) = if attributes.normals {
             let normals = vertices.map(|vertex| NormalRecord::load(d, vertex));
             let normals = Corners::new(normals, &place.weights);
             let stored = normals.vector(d, |corner| corner.normal).normalize_any(d);
             let turned = d.lt(stored.dot(d, geometric_normal), zero);
-            (stored.map(|c| d.select(turned, -c, c)), turned)
+            let normal = stored.map(|c| d.select(turned, -c, c));
+            (normal, shading_frame::visible(d, normal, wo), turned)
         } else {
-            (geometric_normal, !front)
-        };
-        let shading_normal = match attributes.normals {
-            true => shading_frame::visible(d, untilted, wo),
-            false => geometric_normal,
+            (geometric_normal, geometric_normal, !front)
         };
         let frame = if attributes.tangents {
             let tangents = vertices.map(|vertex| TangentRecord::load(d, vertex));

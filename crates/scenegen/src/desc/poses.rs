@@ -3,7 +3,7 @@
 use super::{CameraDesc, InstanceDesc, LightDesc, PoseDesc, SceneDesc};
 
 /// Why there is no motion blur where a shutter is open.
-pub(crate) const NOTHING_MOVES: &str = "nothing that is seen moves while the shutter is open";
+pub const NOTHING_MOVES: &str = "nothing that is seen moves while the shutter is open";
 
 /// One of a scene's poses.
 #[derive(Debug, Clone, Copy)]
