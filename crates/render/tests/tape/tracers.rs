@@ -206,9 +206,16 @@ impl Formula for AnyStep {
         if let Some(seen) = step.seen {
             out.vector(seen);
         }
-        let features = step.features.expect("there are layers");
-        out.truths.push(features.first);
-        out.reals.extend(features.channels(layers));
+        let of_camera = self.2 == PathOrigin::Camera;
+        assert_eq!(
+            step.features.is_some(),
+            of_camera,
+            "what a light path meets is in no pixel yet"
+        );
+        if let Some(features) = step.features {
+            out.truths.push(features.first);
+            out.reals.extend(features.channels(layers));
+        }
         if let Some(shadow) = step.shadow {
             out.vector(shadow.ray.org);
             out.vector(shadow.ray.dir);
