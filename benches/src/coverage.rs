@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use anyhow::{Context, Result};
 use residual_accuracy::{ErrorEstimate, Estimate, Interval, luminance, relative_mse};
-use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
+use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, SceneView, Width};
 use residual_frontend::hierarchy_quality;
 use residual_render::film::{Film, Sampling, TILE_SIZE, TileRect};
 use residual_render::passes::RenderOptions;
@@ -125,14 +125,13 @@ pub fn coverage(
         sampling,
         parts,
     } = subject;
-    let lanes = LaneCount::native();
     let quality = hierarchy_quality(plan.data.triangle_count());
-    let bvh = AnyBvh::build(&plan.data, lanes, quality);
+    let bvh = AnyBvh::build(&plan.data, Width::Native, quality);
     let view = SceneView {
         buffers: plan.data.buffers(),
         traversal: &bvh,
     };
-    let interpreter = Interpreter::new(plan.structure.clone(), lanes);
+    let interpreter = Interpreter::new(plan.structure.clone());
     let render = |device: &CpuDevice, seed: u32| -> Vec<Vec<Run>> {
         let options = RenderOptions {
             size,

@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use anyhow::{Context, Result};
 use residual_bvh::{Hit, Ray};
 use residual_device_cpu::traversal::AlphaFilter;
-use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, Traversal};
+use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, SceneView, Traversal, Width};
 use residual_frontend::hierarchy_quality;
 use residual_render::passes::RenderOptions;
 use residual_scenegen::plan::{CullingRule, PlanOptions, plan};
@@ -27,13 +27,12 @@ pub fn recorded_sets(scene: &Scene, size: [u32; 2]) -> Result<Vec<RaySet>> {
         ..PlanOptions::default()
     };
     let plan = plan(description, &options).with_context(|| scene.name.clone())?;
-    let lanes = LaneCount::native();
     let quality = hierarchy_quality(plan.data.triangle_count());
     let recorder = Recorder {
-        bvh: AnyBvh::build(&plan.data, lanes, quality),
+        bvh: AnyBvh::build(&plan.data, Width::Native, quality),
         streams: Mutex::default(),
     };
-    let interpreter = Interpreter::new(plan.structure.clone(), lanes);
+    let interpreter = Interpreter::new(plan.structure.clone());
     let view = SceneView {
         buffers: plan.data.buffers(),
         traversal: &recorder,

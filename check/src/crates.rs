@@ -30,6 +30,10 @@ pub const TABLE: &[Row] = &[
     row("residual-scenegen", &["residual-render"]),
     row("residual-device-cpu", &["residual-bvh", "residual-render"]),
     row(
+        "residual-any-lanes",
+        &["residual-device-cpu", "residual-render"],
+    ),
+    row(
         "residual-device-wgpu",
         &["residual-bvh", "residual-render", "residual-wgsl"],
     ),
@@ -61,6 +65,7 @@ pub const TABLE: &[Row] = &[
     row(
         "residual-benches",
         &[
+            "residual-any-lanes",
             "residual-bvh",
             "residual-device-cpu",
             "residual-driver",
@@ -74,6 +79,7 @@ pub const TABLE: &[Row] = &[
     row(
         "residual-study",
         &[
+            "residual-any-lanes",
             "residual-bvh",
             "residual-device-cpu",
             "residual-driver",
@@ -102,6 +108,7 @@ pub const TABLE: &[Row] = &[
     row(
         "residual-tests",
         &[
+            "residual-any-lanes",
             "residual-bvh",
             "residual-device-cpu",
             "residual-device-wgpu",

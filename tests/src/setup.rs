@@ -3,9 +3,10 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use residual_any_lanes::AnyLanes;
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{
-    AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileRenderer, Traversal,
+    AnyBvh, CpuDevice, LaneCount, SceneView, TileRenderer, Traversal, Width,
 };
 use residual_render::film::{Film, Sampling};
 use residual_render::passes::RenderOptions;
@@ -77,7 +78,7 @@ pub struct Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// Builds the hierarchy that goes with the lane count; a hasty one over more triangles than it pays for in a test.
+    /// Builds the hierarchy, of four children for up to four lanes; a hasty one over more triangles than it pays for in a test.
     pub fn new(plan: &'a Plan, lanes: LaneCount) -> Self {
         const MANY: usize = 150_000;
         let many = plan.data.triangle_count() > MANY;
@@ -86,7 +87,12 @@ impl<'a> Prepared<'a> {
         } else {
             BuildQuality::Best
         };
-        Self::with_traversal(plan, lanes, AnyBvh::build(&plan.data, lanes, quality))
+        // A hierarchy of another width may not show, either.
+        let width = match lanes {
+            LaneCount::One | LaneCount::Four => Width::Four,
+            LaneCount::Eight | LaneCount::Sixteen => Width::Native,
+        };
+        Self::with_traversal(plan, lanes, AnyBvh::build(&plan.data, width, quality))
     }
 
     /// With a traversal of the plan's triangles.
@@ -111,8 +117,8 @@ impl<'a> Prepared<'a> {
     }
 
     /// The plan's interpreter.
-    pub fn interpreter(&self) -> Interpreter {
-        Interpreter::new(self.plan.structure.clone(), self.lanes)
+    pub fn interpreter(&self) -> AnyLanes {
+        AnyLanes::new(self.plan.structure.clone(), self.lanes)
     }
 
     /// Renders by interpretation.

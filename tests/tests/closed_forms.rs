@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use residual_any_lanes::AnyLanes;
 use residual_bvh::BuildQuality;
-use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView};
+use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, Width};
 use residual_render::alias_table::AliasEntry;
 use residual_render::camera::CameraRecord;
 use residual_render::film::Film;
@@ -109,12 +110,12 @@ fn render(
     samples: u32,
     max_depth: u32,
 ) -> Film {
-    let bvh = AnyBvh::build(data, lanes, BuildQuality::Medium);
+    let bvh = AnyBvh::build(data, Width::Native, BuildQuality::Medium);
     let view = SceneView {
         buffers: data.buffers(),
         traversal: &bvh,
     };
-    let interpreter = Interpreter::new(structure.clone(), lanes);
+    let interpreter = AnyLanes::new(structure.clone(), lanes);
     let device = CpuDevice::new(2).expect("threads");
     let options = RenderOptions {
         size: [16, 16],

@@ -2,7 +2,7 @@
 //! scene, and all of them compiled against interpreted.
 
 use residual_bvh::BuildQuality;
-use residual_device_cpu::{AnyBvh, LaneCount, Traversal};
+use residual_device_cpu::{AnyBvh, LaneCount, Traversal, Width};
 use residual_render::film::Film;
 use residual_render::layer::{Layer, Layers};
 use residual_render::tracer::{AnySharing, CostMap, DebugView, TracerNode};
@@ -203,7 +203,7 @@ fn debug_pictures_show_what_is_there() {
 #[test]
 fn the_heat_map_is_of_the_visits_of_camera_rays() {
     let plan = planned(&two_squares(), TracerNode::Debug(DebugView::TraversalCost));
-    let bvh = AnyBvh::build(&plan.data, LaneCount::native(), BuildQuality::Best);
+    let bvh = AnyBvh::build(&plan.data, Width::Native, BuildQuality::Best);
     let visits = [LEFT, BESIDE].map(|[x, y]| {
         let ray = residual_bvh::Ray::unbounded([x, y, 2.0], [0.0, 0.0, -1.0]);
         let mut visits = [0];

@@ -206,7 +206,8 @@ pub(crate) struct RenderArgs {
     /// How the renderer is made from the scene
     #[arg(long, value_enum, default_value_t = TierArg::Auto)]
     pub(crate) tier: TierArg,
-    /// Paths shaded at once: 1, 4, 8 or 16; the image does not depend on it [default: what suits the machine]
+    /// Paths that the compiled renderer shades at once: 1, 4, 8 or 16; the image does not depend on it [default: what
+    /// suits the machine]
     #[arg(long, value_name = "N")]
     pub(crate) lanes: Option<LaneCount>,
 }

@@ -24,7 +24,7 @@ use clap::Parser;
 use residual_frontend::note;
 
 use crate::args::{Cli, Command};
-use crate::choices::DeviceArg;
+use crate::choices::{DeviceArg, TargetArg};
 
 /// The command line: status 0, 1 for a failed job, 2 for bad usage and for images that cannot be compared.
 pub fn main() -> ExitCode {
@@ -45,7 +45,13 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
             DeviceArg::Wgpu => return delegate::all_to_package("xtask-wgpu"),
         },
         Command::Inspect(args) => inspect::run(&args)?,
-        Command::Emit(args) => emit::run(&args)?,
+        Command::Emit(args) => match args.target {
+            TargetArg::Rust => emit::rust(&args)?,
+            #[cfg(feature = "wgpu")]
+            TargetArg::Wgsl => emit::wgsl(&args)?,
+            #[cfg(not(feature = "wgpu"))]
+            TargetArg::Wgsl => return delegate::all_to_package("xtask-wgpu"),
+        },
         Command::Build(args) => build::run(&args)?,
         Command::Cache(command) => cache::run(command)?,
         Command::Compare(args) => return Ok(compare::run(&args)),

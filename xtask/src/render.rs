@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use anyhow::{Context, Result, ensure};
-use residual_device_cpu::{CpuDevice, LaneCount};
+use residual_device_cpu::{CpuDevice, LaneCount, Width};
 use residual_driver::poses::Poses;
 use residual_driver::tiers::{Ledger, Tiers};
 use residual_frontend::note;
@@ -35,11 +35,15 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         SpecializeArg::None => TierArg::Interpreted,
         SpecializeArg::Structure | SpecializeArg::Constants => args.tier,
     };
+    ensure!(
+        args.lanes.is_none() || tier != TierArg::Interpreted,
+        "--lanes: an interpreted render has as many as suit the machine; leave it out, or have the renderer compiled"
+    );
 
     let manifests = scene::manifests(&plan);
     let tiers = Tiers::new(&plan, lanes);
     let ledger = Ledger::default();
-    let poses = Poses::new(&plan, LaneCount::native(), options.seed);
+    let poses = Poses::new(&plan, Width::Native, options.seed);
     let rendered = std::thread::scope(|scope| {
         // Compilation runs beside the building of the hierarchy and, with `auto`, beside rendering.
         let compilation = (tier != TierArg::Interpreted).then(|| scope.spawn(|| tiers.compile()));

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
-use residual_device_cpu::{CpuDevice, LaneCount};
+use residual_device_cpu::{CpuDevice, LaneCount, Width};
 use residual_device_wgpu::{Arithmetic, Dialect, Gpu, Mapping, Mode, Question, list_adapters};
 use residual_driver::gpu::{GpuDriver, GpuPasses, arithmetic};
 use residual_driver::poses::Poses;
@@ -51,12 +51,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         );
     }
     let (plan, load) = scene::load(&args.scene, Exposure::of(&args.render))?;
-    let lanes = args.lanes.unwrap_or_else(LaneCount::native);
     let cpu = CpuDevice::new(args.render.threads).context("starting threads")?;
     let options = args
         .render
         .render_options(args.scene.size.0, scene::defaults(&plan));
-    let poses = Poses::new(&plan, LaneCount::Four, options.seed);
+    let poses = Poses::new(&plan, Width::Four, options.seed);
     poses.hierarchy(0);
     let mapping = match args.mapping {
         MappingArg::Wavefront => Mapping::Wavefront,
@@ -72,7 +71,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         if plan.motion.is_some() {
             scope.spawn(|| poses.build_ahead());
         }
-        let mut passes = GpuPasses::new(&driver, &cpu, lanes, &options);
+        let mut passes = GpuPasses::new(&driver, &cpu, &options);
         let rendered = session.render(
             scene::subject(&plan, &manifests),
             &options,
@@ -101,7 +100,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         },
         device: DeviceReport::Wgpu(report),
         threads: cpu.threads(),
-        lanes: lanes.count(),
+        lanes: LaneCount::native().count(),
         bvh_bytes,
         rendered: &rendered,
     };

@@ -6,7 +6,9 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use residual_device_cpu::plugin::LoadedRenderer;
-use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileRenderer};
+use residual_device_cpu::{
+    AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileRenderer, Width,
+};
 use residual_driver::compile;
 use residual_frontend::pictures::{Picture, write};
 use residual_frontend::{hierarchy_quality, output};
@@ -47,7 +49,7 @@ fn measure(path: &Path, args: &ErrorArgs) -> Result<()> {
     // What samplers differ in is not in the data.
     let data = &plans.first().context("there is no sampler")?.data;
     let quality = hierarchy_quality(data.triangle_count());
-    let bvh = AnyBvh::build(data, LaneCount::native(), quality);
+    let bvh = AnyBvh::build(data, Width::Native, quality);
     let device = CpuDevice::new(args.threads).context("starting threads")?;
     let mut contenders: Vec<Box<dyn Contender + '_>> = Vec::new();
     let own = plans.iter().zip(&renderers).zip(&args.sampler);
@@ -96,12 +98,9 @@ enum Renderer {
 
 impl Renderer {
     fn of(plan: &Plan, tier: TierArg) -> Result<Self> {
-        let lanes = LaneCount::native();
         Ok(match tier {
-            TierArg::Interpreted => {
-                Self::Interpreted(Interpreter::new(plan.structure.clone(), lanes))
-            }
-            TierArg::Specialized => Self::Specialized(compile(plan, lanes)?),
+            TierArg::Interpreted => Self::Interpreted(Interpreter::new(plan.structure.clone())),
+            TierArg::Specialized => Self::Specialized(compile(plan, LaneCount::native())?),
         })
     }
 

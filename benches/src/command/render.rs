@@ -7,8 +7,9 @@ use crate::isa::Isa;
 use crate::mesh::Mesh;
 use crate::render::{RenderContender, RenderRow, render_table, renders};
 use anyhow::{Context, Result};
+use residual_any_lanes::AnyLanes;
 use residual_device_cpu::plugin::LoadedRenderer;
-use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, Traversal};
+use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, Traversal, Width};
 use residual_driver::compile;
 use residual_frontend::hierarchy_quality;
 use residual_render::passes::RenderOptions;
@@ -79,7 +80,7 @@ fn load(path: &Path, args: &RenderBenchArgs) -> Result<Plan> {
 /// One lane count's renderers.
 struct Renderers {
     lanes: LaneCount,
-    interpreter: Interpreter,
+    interpreter: AnyLanes,
     compiled: LoadedRenderer,
 }
 
@@ -99,17 +100,13 @@ fn measure(
         .map(|&lanes| {
             Ok(Renderers {
                 lanes,
-                interpreter: Interpreter::new(plan.structure.clone(), lanes),
+                interpreter: AnyLanes::new(plan.structure.clone(), lanes),
                 compiled: compile(plan, lanes)?,
             })
         })
         .collect::<Result<Vec<_>>>()?;
     let triangles = plan.data.triangle_count();
-    let bvh = AnyBvh::build(
-        &plan.data,
-        LaneCount::native(),
-        hierarchy_quality(triangles),
-    );
+    let bvh = AnyBvh::build(&plan.data, Width::Native, hierarchy_quality(triangles));
     let (single, packets) = (
         embree.map(EmbreeTraversal::single),
         embree.map(EmbreeTraversal::packets),

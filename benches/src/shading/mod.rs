@@ -15,7 +15,8 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use residual_accuracy::Estimate;
-use residual_device_cpu::{Interpreter, LaneCount, SceneView, TileJob, TileRenderer};
+use residual_any_lanes::AnyLanes;
+use residual_device_cpu::{LaneCount, SceneView, TileJob, TileRenderer};
 use residual_render::film::{Pass, SampleSet, TileRect, TileSamples};
 use residual_render::layer::Layers;
 use residual_render::program::{CameraNode, LightNode, Structure};
@@ -131,7 +132,7 @@ pub fn shading(
         .map(|&(lanes, specialized)| Renderers {
             lanes,
             specialized,
-            interpreter: Interpreter::new(plan.structure.clone(), lanes),
+            interpreter: AnyLanes::new(plan.structure.clone(), lanes),
             cases: CasesRenderer::new(lanes),
         })
         .collect();
@@ -184,7 +185,7 @@ pub fn shading(
 struct Renderers<'a> {
     lanes: LaneCount,
     specialized: &'a dyn TileRenderer,
-    interpreter: Interpreter,
+    interpreter: AnyLanes,
     cases: CasesRenderer,
 }
 

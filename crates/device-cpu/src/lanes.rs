@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd, SimdBase, dispatch};
 
 /// Lanes of `f32`. Images do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -24,15 +24,15 @@ impl LaneCount {
 
     /// The count that suits the machine at hand.
     pub fn native() -> Self {
-        let level = Level::new();
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        match level {
-            Level::Avx512(_) => return Self::Sixteen,
-            Level::Avx2(_) => return Self::Eight,
-            _ => {}
+        dispatch!(Level::new(), simd => Self::of(simd))
+    }
+
+    fn of<S: Simd>(_: S) -> Self {
+        match native::<S>() {
+            16.. => Self::Sixteen,
+            8.. => Self::Eight,
+            _ => Self::Four,
         }
-        let _ = level;
-        Self::Four
     }
 
     /// As a number.
@@ -44,6 +44,11 @@ impl LaneCount {
             Self::Sixteen => 16,
         }
     }
+}
+
+/// How many lanes suit an instruction set: a constant, so that what is for others is not compiled for it.
+pub const fn native<S: Simd>() -> usize {
+    <S::f32s as SimdBase<S>>::LEN
 }
 
 impl fmt::Display for LaneCount {

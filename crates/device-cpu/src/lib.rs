@@ -25,7 +25,7 @@ pub use device::CpuDevice;
 pub use interpreter::Interpreter;
 pub use job::{SceneView, TileJob, TileRenderer};
 pub use lanes::LaneCount;
-pub use traversal::{AnyBvh, PreciseBvh, Traversal};
+pub use traversal::{AnyBvh, PreciseBvh, Traversal, Width};
 
 /// What emitted code needs, under stable names.
 #[doc(hidden)]

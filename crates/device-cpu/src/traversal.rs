@@ -3,14 +3,14 @@
 //! So the kernels are compiled once, not with every scene, and a hierarchy is as wide as suits the machine, not as wide
 //! as the shading. It is also where another library's traversal is put in.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::{Level, Simd, dispatch};
 use residual_bvh::{
     AllHits, BuildQuality, Bvh, CompactBvh, Culling, Hit, HitFilter, Hybrid, Kernel, MarkedHits,
     Precision, Ray, Watertight, build, build_compact, traversal_cost,
 };
 use residual_render::scene_data::SceneData;
 
-use crate::lanes::LaneCount;
+use crate::lanes::native;
 
 /// Says whether a surface is there where a ray meets it (alpha). A pure function of both.
 pub type AlphaFilter<'a> = dyn Fn(&Ray, &Hit) -> bool + 'a;
@@ -30,7 +30,16 @@ pub trait Traversal {
     }
 }
 
-/// A hierarchy of the width that suits the machine.
+/// How many children a hierarchy's nodes have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// As many as suit the machine: as its lanes, whatever the lanes that shade.
+    Native,
+    /// Four, as GPUs traverse.
+    Four,
+}
+
+/// A hierarchy.
 #[derive(Debug)]
 pub struct AnyBvh {
     tree: Tree,
@@ -62,6 +71,7 @@ impl Marks {
     }
 }
 
+/// A width of eight or sixteen is that of an instruction set, for which alone it is compiled.
 #[derive(Debug)]
 enum Tree {
     Four(Bvh<4>),
@@ -71,8 +81,8 @@ enum Tree {
 }
 
 impl AnyBvh {
-    /// Builds the hierarchy over a scene's triangles, as wide as these lanes, but at least four.
-    pub fn build(data: &SceneData, width: LaneCount, quality: BuildQuality) -> Self {
+    /// Builds the hierarchy over a scene's triangles.
+    pub fn build(data: &SceneData, width: Width, quality: BuildQuality) -> Self {
         Self::build_moved(data, &data.positions(), width, quality)
     }
 
@@ -83,21 +93,21 @@ impl AnyBvh {
     pub fn build_moved(
         data: &SceneData,
         positions: &[[f32; 3]],
-        width: LaneCount,
+        width: Width,
         quality: BuildQuality,
     ) -> Self {
         let triangles = data.triangles();
         assert_eq!(positions.len(), 3 * triangles.len(), "three a triangle");
         let sided = data.single_sided.contains(&true);
         let sides = sided.then_some(data.single_sided.as_slice());
-        let tree = match width {
-            LaneCount::One | LaneCount::Four => {
-                Tree::Four(build(positions, &triangles, sides, quality))
-            }
-            LaneCount::Eight => Tree::Eight(build(positions, &triangles, sides, quality)),
-            LaneCount::Sixteen => {
-                Tree::Sixteen(build_compact(positions, &triangles, sides, quality))
-            }
+        let children = match width {
+            Width::Native => dispatch!(Level::new(), simd => width_of(simd)),
+            Width::Four => 4,
+        };
+        let tree = match children {
+            16.. => Tree::Sixteen(build_compact(positions, &triangles, sides, quality)),
+            8.. => Tree::Eight(build(positions, &triangles, sides, quality)),
+            _ => Tree::Four(build(positions, &triangles, sides, quality)),
         };
         Self {
             tree,
@@ -148,15 +158,35 @@ impl HitFilter for AlphaTested<'_> {
     }
 }
 
-/// Evaluates an expression for the hierarchy, whatever its width, and the kernel of its streams, on the machine's
-/// instruction set.
+fn width_of<S: Simd>(_: S) -> usize {
+    native::<S>()
+}
+
+/// Evaluates an expression for the hierarchy, whatever its width, and the kernel of its streams, on instruction set `$S`.
 macro_rules! with_tree {
-    ($tree:expr, $simd:ident, $kernel:ident, $bvh:ident => $call:expr) => {
-        dispatch!(Level::new(), $simd => match $tree {
-            Tree::Four(bvh) => { let ($kernel, $bvh) = (Hybrid::<4>, bvh.view()); $call }
-            Tree::Eight(bvh) => { let ($kernel, $bvh) = (Hybrid::<8>, bvh.view()); $call }
-            Tree::Sixteen(bvh) => { let ($kernel, $bvh) = (Hybrid::<16>, bvh.view()); $call }
-        })
+    ($S:ident, $tree:expr, $kernel:ident, $bvh:ident => $call:expr) => {
+        match $tree {
+            Tree::Four(bvh) => {
+                let ($kernel, $bvh) = (Hybrid::<4>, bvh.view());
+                $call
+            }
+            Tree::Eight(bvh) => {
+                if const { native::<$S>() == 8 } {
+                    let ($kernel, $bvh) = (Hybrid::<8>, bvh.view());
+                    $call
+                } else {
+                    unreachable!("built for another instruction set")
+                }
+            }
+            Tree::Sixteen(bvh) => {
+                if const { native::<$S>() >= 16 } {
+                    let ($kernel, $bvh) = (Hybrid::<16>, bvh.view());
+                    $call
+                } else {
+                    unreachable!("built for another instruction set")
+                }
+            }
+        }
     };
 }
 
@@ -196,12 +226,7 @@ impl Traversal for AnyBvh {
     }
 
     fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&AlphaFilter<'_>>) {
-        with_tree!(&self.tree, simd, _kernel, bvh => with_filter!(self, alpha, filter => {
-            for (ray, visits) in rays.iter().zip(visits) {
-                let cost = traversal_cost(simd, Watertight, bvh, ray, filter);
-                *visits = cost.nodes + cost.packets;
-            }
-        }));
+        dispatch!(Level::new(), simd => self.visits_on(simd, rays, visits, alpha));
     }
 }
 
@@ -215,14 +240,56 @@ pub struct PreciseBvh<'a, P> {
 /// Streams are traced in packets as wide as the hierarchy where neighbours agree, and with many rays in flight elsewhere.
 impl<P: Precision> Traversal for PreciseBvh<'_, P> {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>) {
-        let (scene, precision) = (self.bvh, self.precision);
-        with_tree!(&scene.tree, simd, kernel, bvh => with_filter!(scene, alpha, filter =>
-            kernel.closest_hits(simd, precision, bvh, rays, hits, filter)));
+        dispatch!(Level::new(), simd => self.closest_hits_on(simd, rays, hits, alpha));
     }
 
     fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&AlphaFilter<'_>>) {
+        dispatch!(Level::new(), simd => self.any_hits_on(simd, rays, occluded, alpha));
+    }
+}
+
+impl<P: Precision> PreciseBvh<'_, P> {
+    #[inline(always)]
+    fn closest_hits_on<S: Simd>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        hits: &mut [Hit],
+        alpha: Option<&AlphaFilter<'_>>,
+    ) {
         let (scene, precision) = (self.bvh, self.precision);
-        with_tree!(&scene.tree, simd, kernel, bvh => with_filter!(scene, alpha, filter =>
+        with_tree!(S, &scene.tree, kernel, bvh => with_filter!(scene, alpha, filter =>
+            kernel.closest_hits(simd, precision, bvh, rays, hits, filter)));
+    }
+
+    #[inline(always)]
+    fn any_hits_on<S: Simd>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        occluded: &mut [bool],
+        alpha: Option<&AlphaFilter<'_>>,
+    ) {
+        let (scene, precision) = (self.bvh, self.precision);
+        with_tree!(S, &scene.tree, kernel, bvh => with_filter!(scene, alpha, filter =>
             kernel.any_hits(simd, precision, bvh, rays, occluded, filter)));
+    }
+}
+
+impl AnyBvh {
+    #[inline(always)]
+    fn visits_on<S: Simd>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        visits: &mut [u32],
+        alpha: Option<&AlphaFilter<'_>>,
+    ) {
+        with_tree!(S, &self.tree, _kernel, bvh => with_filter!(self, alpha, filter => {
+            for (ray, visits) in rays.iter().zip(visits) {
+                let cost = traversal_cost(simd, Watertight, bvh, ray, filter);
+                *visits = cost.nodes + cost.packets;
+            }
+        }));
     }
 }

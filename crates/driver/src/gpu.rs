@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
-use residual_device_cpu::{CpuDevice, Interpreter, LaneCount};
+use residual_device_cpu::{CpuDevice, Interpreter};
 use residual_device_wgpu::{
     Dialect, FloatControls, Gpu, GpuPose, Mapping, Mode, Probe, WgpuRenderer,
 };
@@ -121,16 +121,11 @@ impl Agreement {
 
 impl<'a> GpuPasses<'a> {
     /// Passes into a film of these options.
-    pub fn new(
-        driver: &'a GpuDriver<'a>,
-        cpu: &'a CpuDevice,
-        lanes: LaneCount,
-        options: &'a RenderOptions,
-    ) -> Self {
+    pub fn new(driver: &'a GpuDriver<'a>, cpu: &'a CpuDevice, options: &'a RenderOptions) -> Self {
         Self {
             driver,
             cpu,
-            interpreter: Interpreter::new(driver.plan.structure.clone(), lanes),
+            interpreter: Interpreter::new(driver.plan.structure.clone()),
             copied: BTreeMap::new(),
             options,
             first: None,

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, TileRenderer};
+use residual_device_cpu::{AnyBvh, CpuDevice, SceneView, TileRenderer, Width};
 use residual_frontend::hierarchy_quality;
 use residual_render::changed_data::ChangedData;
 use residual_render::film::{Film, TILE_SIZE};
@@ -20,7 +20,7 @@ use residual_scenegen::plan::{Motion, Plan};
 /// A plan with the hierarchies of its poses.
 pub struct Poses<'a> {
     plan: &'a Plan,
-    width: LaneCount,
+    width: Width,
     /// Which sample sees which moment; `None` where nothing moves.
     moments: Option<(Moments, &'a Motion)>,
     /// Of the first pose, then of those in which triangles have moved.
@@ -29,11 +29,11 @@ pub struct Poses<'a> {
 }
 
 impl<'a> Poses<'a> {
-    /// Those of a plan, for a render with this seed. Hierarchies are as wide as these lanes; none is built yet.
+    /// Those of a plan, for a render with this seed. No hierarchy is built yet.
     ///
     /// # Panics
     /// If the plan's moments are no power of two, which no plan has.
-    pub fn new(plan: &'a Plan, width: LaneCount, seed: u32) -> Self {
+    pub fn new(plan: &'a Plan, width: Width, seed: u32) -> Self {
         let moments = plan.motion.as_ref().map(|motion| {
             let count = motion.moments.len() as u32;
             let moments = Moments::new(count, seed).expect("plans have powers of two of moments");

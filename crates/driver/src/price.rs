@@ -7,7 +7,7 @@
 use anyhow::{Context, Result};
 use residual_accuracy::{Estimate, Jackknifed, flip, relative_mse};
 use residual_device_cpu::plugin::LoadedRenderer;
-use residual_device_cpu::{CpuDevice, Interpreter, LaneCount, TileRenderer};
+use residual_device_cpu::{CpuDevice, Interpreter, LaneCount, TileRenderer, Width};
 use residual_frontend::process_time;
 use residual_render::passes::RenderOptions;
 use residual_render::program::{AlphaTestNode, BsdfNode, LightNode, Program, ScalarNode};
@@ -125,7 +125,7 @@ pub fn prices(
 ) -> Result<Vec<Price>> {
     let variants = variants(with, scene, options, measurement.tier, &mut report)?;
     let poses = variants.iter().map(|variant| {
-        let poses = Poses::new(&variant.plan, LaneCount::native(), 0);
+        let poses = Poses::new(&variant.plan, Width::Native, 0);
         poses.build_ahead();
         poses
     });
@@ -203,7 +203,7 @@ fn variants(
             let lanes = LaneCount::native();
             let renderer = match tier {
                 PricedTier::Interpreted => {
-                    Renderer::Interpreted(Interpreter::new(plan.structure.clone(), lanes))
+                    Renderer::Interpreted(Interpreter::new(plan.structure.clone()))
                 }
                 PricedTier::Specialized => {
                     report(Step::Compiling {

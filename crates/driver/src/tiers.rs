@@ -63,7 +63,7 @@ impl<'a> Tiers<'a> {
         Self {
             plan,
             lanes,
-            interpreter: Interpreter::new(plan.structure.clone(), lanes),
+            interpreter: Interpreter::new(plan.structure.clone()),
             compiler: Compiler::default(),
             compilation: OnceLock::new(),
         }

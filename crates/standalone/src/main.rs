@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use clap::Parser;
-use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, TileRenderer};
+use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, TileRenderer, Width};
 use residual_frontend::cryptomatte::Manifest;
 use residual_frontend::hierarchy_quality;
 use residual_frontend::options::{RenderArgs, SceneDefaults, Size};
@@ -88,7 +88,7 @@ fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
     let load = session.start.elapsed();
     let bvh_start = Instant::now();
     let quality = hierarchy_quality(data.triangle_count());
-    let bvh = AnyBvh::build(&data, LaneCount::native(), quality);
+    let bvh = AnyBvh::build(&data, Width::Native, quality);
     let preparation = Preparation {
         load,
         bvh: bvh_start.elapsed(),

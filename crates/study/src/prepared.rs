@@ -5,10 +5,9 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 use residual_accuracy::luminance;
+use residual_any_lanes::AnyLanes;
 use residual_device_cpu::plugin::LoadedRenderer;
-use residual_device_cpu::{
-    AnyBvh, CpuDevice, Interpreter, LaneCount, SceneView, TileJob, TileRenderer,
-};
+use residual_device_cpu::{AnyBvh, CpuDevice, SceneView, TileJob, TileRenderer, Width};
 use residual_driver::compile;
 use residual_frontend::{hierarchy_quality, process_time};
 use residual_render::film::{Film, SampleSet, TILE_SIZE, TileRect, TileSamples};
@@ -82,7 +81,7 @@ impl<'a> Preparation<'a> {
     pub fn prepare(&mut self, setup: &Setup, mean: f64) -> Result<Prepared> {
         let plan = plan(self.scene, &setup.plan)?;
         let renderer: Box<dyn TileRenderer> = match setup.tier {
-            Tier::Interpreted => Box::new(Interpreter::new(plan.structure.clone(), setup.lanes)),
+            Tier::Interpreted => Box::new(AnyLanes::new(plan.structure.clone(), setup.lanes)),
             Tier::Specialized => {
                 let compiled: LoadedRenderer = compile(&plan, setup.lanes)
                     .context("--tier interpreted renders without a compiler")?;
@@ -113,7 +112,7 @@ impl<'a> Preparation<'a> {
             return Rc::clone(bvh);
         }
         let quality = hierarchy_quality(plan.data.triangle_count());
-        let bvh = Rc::new(AnyBvh::build(&plan.data, LaneCount::native(), quality));
+        let bvh = Rc::new(AnyBvh::build(&plan.data, Width::Native, quality));
         self.built = Some((positions, Rc::clone(&bvh)));
         bvh
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use residual_bvh::BuildQuality;
-use residual_device_cpu::{AnyBvh, CpuDevice, SceneView};
+use residual_device_cpu::{AnyBvh, CpuDevice, SceneView, Width};
 use residual_render::passes::RenderOptions;
 use residual_render::texture::srgb_code;
 use residual_scenegen::import::{ImportOptions, import};
@@ -32,7 +32,7 @@ fn main() -> Result<()> {
     let plan = plan(&scene, &options)?;
     plan.check_structure(Scene::STRUCTURE)?;
 
-    let bvh = AnyBvh::build(&plan.data, Compiled::LANES, BuildQuality::Best);
+    let bvh = AnyBvh::build(&plan.data, Width::Native, BuildQuality::Best);
     let view = SceneView {
         buffers: plan.data.buffers(),
         traversal: &bvh,

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use residual_bvh::BuildQuality;
-use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, SceneView, TileRenderer};
+use residual_device_cpu::{AnyBvh, CpuDevice, Interpreter, SceneView, TileRenderer, Width};
 use residual_render::film::Film;
 use residual_render::passes::RenderOptions;
 use residual_render::sampler::AnySampler;
@@ -34,7 +34,7 @@ fn planned(options: &PlanOptions) -> Plan {
 }
 
 fn render(plan: &Plan, renderer: &dyn TileRenderer, threads: usize) -> Film {
-    let bvh = AnyBvh::build(&plan.data, Compiled::LANES, BuildQuality::Best);
+    let bvh = AnyBvh::build(&plan.data, Width::Native, BuildQuality::Best);
     let view = SceneView {
         buffers: plan.data.buffers(),
         traversal: &bvh,
@@ -58,11 +58,7 @@ fn compiled_in_and_interpreted_give_the_same_bits() {
     let plan = planned(&settings::plan_options());
     plan.check_structure(Scene::STRUCTURE).unwrap();
     let compiled = render(&plan, &Compiled, 2);
-    let interpreted = render(
-        &plan,
-        &Interpreter::new(plan.structure.clone(), Compiled::LANES),
-        1,
-    );
+    let interpreted = render(&plan, &Interpreter::new(plan.structure.clone()), 1);
     let bits = |film: &Film| -> Vec<_> {
         film.image()
             .into_iter()

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use residual_device_cpu::{Interpreter, LaneCount};
+use residual_any_lanes::AnyLanes;
+use residual_device_cpu::LaneCount;
 use residual_render::domain::Buffer;
 use residual_render::light::EnvironmentHeader;
 use residual_render::program::{LightNode, Structure};
@@ -18,7 +19,7 @@ use residual_tests::{Look, Prepared};
 /// What a renderer of a plan shows of a scene's data.
 fn picture(plan: &Plan, structure: &Structure) -> Vec<[f32; 3]> {
     let prepared = Prepared::new(plan, LaneCount::Eight);
-    let renderer = Interpreter::new(structure.clone(), LaneCount::Eight);
+    let renderer = AnyLanes::new(structure.clone(), LaneCount::Eight);
     let film = prepared.render(&renderer, &Look::new(SIZE, 8));
     assert_eq!(film.invalid_samples(), 0);
     film.image()

@@ -1,6 +1,6 @@
 //! Small animated glTF files.
 
-use residual_device_cpu::{CpuDevice, Interpreter, LaneCount};
+use residual_device_cpu::{CpuDevice, Interpreter, Width};
 use residual_driver::poses::Poses;
 use residual_render::film::Film;
 use residual_render::passes::RenderOptions;
@@ -216,9 +216,8 @@ pub(crate) fn planned_for(tracer: TracerNode, scene: &SceneDesc, size: [u32; 2])
 /// Renders a plan by interpretation, on two threads.
 pub(crate) fn interpret(plan: &Plan, options: &RenderOptions) -> Film {
     let device = CpuDevice::new(2).unwrap();
-    let lanes = LaneCount::native();
-    let interpreter = Interpreter::new(plan.structure.clone(), lanes);
-    Poses::new(plan, lanes, options.seed).render(&device, &interpreter, options)
+    let interpreter = Interpreter::new(plan.structure.clone());
+    Poses::new(plan, Width::Native, options.seed).render(&device, &interpreter, options)
 }
 
 /// So many samples of an image of this size.

@@ -1,6 +1,7 @@
 //! An open shutter shows the mean of its moments, sample by sample and bit for bit; and what does not move costs nothing.
 
-use residual_device_cpu::{CpuDevice, Interpreter, LaneCount};
+use residual_any_lanes::AnyLanes;
+use residual_device_cpu::{CpuDevice, Interpreter, LaneCount, Width};
 use residual_driver::poses::Poses;
 use residual_render::film::{Film, Sampling, TILE_SIZE};
 use residual_render::passes::{Pass, RenderOptions};
@@ -102,8 +103,8 @@ fn check_samples(tracer: TracerNode) {
         let closed = planned_for(tracer, &file.at(Some(time), Vec::new()), SIZE);
         assert!(closed.motion.is_none());
         assert_eq!(closed.structure, open.structure);
-        let interpreter = Interpreter::new(closed.structure.clone(), LaneCount::native());
-        let poses = Poses::new(&closed, LaneCount::native(), seed);
+        let interpreter = Interpreter::new(closed.structure.clone());
+        let poses = Poses::new(&closed, Width::Native, seed);
         let mut one = Film::new(SIZE[0], SIZE[1], TILE_SIZE, closed.structure.layers);
         let pass = Pass {
             first: sample,
@@ -142,16 +143,19 @@ fn neither_threads_nor_passes_nor_a_compiler_show() {
         };
         let expected = interpret(&plan, &look);
         assert_eq!(expected.invalid_samples(), 0);
-        for (threads, lanes) in [(1, LaneCount::Four), (3, LaneCount::Eight)] {
+        for (threads, lanes, width) in [
+            (1, LaneCount::Four, Width::Four),
+            (3, LaneCount::Eight, Width::Native),
+        ] {
             let device = CpuDevice::new(threads).unwrap();
-            let interpreter = Interpreter::new(plan.structure.clone(), lanes);
-            let poses = Poses::new(&plan, lanes, 2);
+            let interpreter = AnyLanes::new(plan.structure.clone(), lanes);
+            let poses = Poses::new(&plan, width, 2);
             poses.build_ahead();
             expect_same(&expected, &poses.render(&device, &interpreter, &look));
         }
         let compiled = residual_driver::compile(&plan, LaneCount::native()).unwrap();
         let device = CpuDevice::new(2).unwrap();
-        let poses = Poses::new(&plan, LaneCount::native(), 2);
+        let poses = Poses::new(&plan, Width::Native, 2);
         expect_same(&expected, &poses.render(&device, &compiled, &look));
     }
 }

@@ -1,6 +1,6 @@
 //! Edges that pass over pixels: how much of the time each pixel is covered is known.
 
-use residual_device_cpu::{CpuDevice, Interpreter, LaneCount};
+use residual_device_cpu::{CpuDevice, Interpreter, Width};
 use residual_driver::poses::Poses;
 use residual_render::cryptomatte;
 use residual_render::film::Sampling;
@@ -127,10 +127,9 @@ fn a_cryptomatte_holds_the_part_of_the_time() {
     };
     let plan = plan(&passing().open(&moments), &plan_options).unwrap();
     let device = CpuDevice::new(1).unwrap();
-    let lanes = LaneCount::native();
-    let interpreter = Interpreter::new(plan.structure.clone(), lanes);
+    let interpreter = Interpreter::new(plan.structure.clone());
     let render = options(WIDE, 32, 0);
-    let film = Poses::new(&plan, lanes, 0).render(&device, &interpreter, &render);
+    let film = Poses::new(&plan, Width::Native, 0).render(&device, &interpreter, &render);
     let layer = film.layer(Layer::CryptoObject).unwrap();
     let square = cryptomatte::id("square");
     for (pixel, [red, ..]) in film.image().into_iter().enumerate() {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use residual_bvh::BuildQuality;
-use residual_device_cpu::{AnyBvh, LaneCount};
+use residual_device_cpu::{AnyBvh, LaneCount, Width};
 use residual_device_wgpu::{Dialect, Mapping, WgpuRenderer};
 use residual_render::film::{Film, SampleSet, TILE_SIZE};
 use residual_render::passes::{MAX_PASS, Pass, RenderOptions};
@@ -22,7 +22,7 @@ pub(crate) struct Subject {
 
 impl Subject {
     pub(crate) fn new(plan: Plan) -> Self {
-        let bvh = AnyBvh::build(&plan.data, LaneCount::Four, BuildQuality::Fast);
+        let bvh = AnyBvh::build(&plan.data, Width::Four, BuildQuality::Fast);
         Self { plan, bvh }
     }
 

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use residual_accuracy::sweep::FailureRate;
 use residual_bvh::Ray;
-use residual_device_cpu::{AnyBvh, LaneCount};
+use residual_device_cpu::{AnyBvh, Width};
 use residual_frontend::hierarchy_quality;
 use residual_render::scene_data::SceneData;
 
@@ -66,7 +66,7 @@ impl Target {
             .unwrap_or_default();
         let largest = low.abs().max(high.abs()).max_element();
         Self {
-            bvh: AnyBvh::build(data, LaneCount::native(), quality),
+            bvh: AnyBvh::build(data, Width::Native, quality),
             edges: shared_edges(&positions, &data.triangles(), 1e-4 * largest),
             diagonal: (high - low).length(),
             least_distance: LEAST_DISTANCE * largest,
