@@ -26,10 +26,6 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         !args.render.adaptive,
         "--adaptive: a GPU takes as many samples of every pixel; render with --device cpu"
     );
-    ensure!(
-        !args.scene.has_light_paths(),
-        "--tracer bidirectional and light run on the processor; render with --device cpu"
-    );
     let session = Session::new(
         &args.render,
         args.scene.scene.file_stem().unwrap_or_default(),

@@ -6,14 +6,13 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use residual_render::film::{Film, SampleSet, TILE_SIZE, TilePass, TileRect, TileSamples};
+use residual_render::film::{Film, SampleSet, Splats, TILE_SIZE, TilePass, TileRect, TileSamples};
 use residual_render::passes::{
     Counters, MAX_PASS, Pass, Progress, RenderOptions, RenderReport, render_passes,
 };
 use residual_render::tracer::{PathOrigin, TracerOptions};
 
 use crate::job::{SceneView, TileJob, TileRenderer};
-use crate::splats::Splats;
 
 /// Threads that render.
 pub struct CpuDevice {
@@ -68,7 +67,7 @@ impl CpuDevice {
         // It would need light paths of its own for all pixels, of which it has few.
         film.drop_second_set();
         let mut counters = Counters::default();
-        for part in parts(pass, options.size) {
+        for part in Splats::parts(pass, options.size) {
             let (splats, did) = self.splats(renderer, scene, options, part);
             counters += did;
             let tiles = film.tile_passes(part);
@@ -224,7 +223,7 @@ impl CpuDevice {
                     assert_eq!(tile.layers(), layers, "one film, one set of layers");
                     let (of_tile, others) = rest.split_at_mut(part.count() * layers.stride());
                     if let Some(splats) = splats {
-                        splats.add_to(part, layers.stride(), of_tile);
+                        splats.add_to(part.rect, 0, layers.stride(), of_tile);
                     }
                     tile.add(of_tile);
                     rest = others;
@@ -255,21 +254,6 @@ impl CpuDevice {
         let (report, Ok(())) = render_passes(options, &mut film, pass, progress);
         (film, report)
     }
-}
-
-/// About as many light paths have their splats in memory at a time.
-const LIGHT_PATHS: u64 = 1 << 20;
-
-/// A pass of an image of this size in parts of so few samples.
-fn parts(pass: Pass, size: [u32; 2]) -> impl Iterator<Item = Pass> {
-    let pixels = u64::from(size[0]) * u64::from(size[1]);
-    let most = (LIGHT_PATHS / pixels.max(1)).max(1) as u32;
-    (0..pass.count)
-        .step_by(most as usize)
-        .map(move |done| Pass {
-            first: pass.first + done,
-            count: most.min(pass.count - done),
-        })
 }
 
 /// Fewest and most samples that make it worth to share streams: the last paths of a job leave them half empty.

@@ -16,7 +16,6 @@ pub mod plugin;
 mod render_lanes;
 mod samples;
 mod shade;
-mod splats;
 mod stream;
 pub mod tile;
 pub mod traversal;

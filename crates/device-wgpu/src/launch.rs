@@ -64,6 +64,21 @@ impl Places {
         block * BLOCK * BLOCK + y % BLOCK * BLOCK + x % BLOCK
     }
 
+    /// What kernels of light paths are told, of which there are as many as pixels, row by row.
+    pub(crate) fn settings_of_lights(
+        self,
+        options: &TracerOptions,
+        slots: u32,
+        first_packet: u32,
+    ) -> Settings {
+        let [width, height] = self.size;
+        Settings {
+            columns: width,
+            places: width * height,
+            ..self.settings(options, slots, first_packet)
+        }
+    }
+
     /// What kernels are told.
     pub(crate) fn settings(
         self,

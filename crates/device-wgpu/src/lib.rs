@@ -4,12 +4,15 @@
 //! `residual-wgsl`; written here are traversal and scheduling only. Samples go back to the same
 //! [`Film`](residual_render::film::Film) as the processor's.
 
+mod adding;
 mod bindings;
+mod compiled;
 mod error;
 mod exact;
 mod experimental;
 mod gpu;
 mod launch;
+mod light_pass;
 mod megakernel;
 mod probe;
 mod rays;

@@ -1,6 +1,6 @@
 //! The megakernel: one kernel, in which a thread follows a path to its end.
 
-use residual_wgsl::KernelSet;
+use residual_wgsl::KernelTexts;
 use wgpu::ComputePipeline;
 
 use crate::error::Error;
@@ -21,7 +21,7 @@ impl Megakernel {
     pub(crate) fn new(
         gpu: &Gpu,
         mode: Mode,
-        kernels: &KernelSet,
+        kernels: KernelTexts<'_>,
         state: &State,
     ) -> Result<Self, Error> {
         let name = "megakernel";

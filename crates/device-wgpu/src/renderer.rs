@@ -1,12 +1,10 @@
 //! A scene on a device, rendered pass by pass into the same film as the processor's.
 
-use std::ops::Range;
 use std::time::Instant;
 
-use rayon::prelude::*;
 use residual_bvh::Bvh;
 use residual_render::domain::Buffers;
-use residual_render::film::FilmTile;
+use residual_render::film::{FilmTile, Splats};
 use residual_render::layer::Layers;
 use residual_render::passes::{Counters, MAX_PASS, Pass};
 use residual_render::program::Structure;
@@ -14,15 +12,16 @@ use residual_render::scene_data::SceneData;
 use residual_render::tracer::{CostMap, PathOrigin, TracerOptions};
 use residual_wgsl::{KernelSet, Mapping};
 
+use crate::adding::{Adding, Samples};
+use crate::compiled::Compiled;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::launch::{Places, Settings};
-use crate::megakernel::Megakernel;
+use crate::light_pass::LightPass;
 use crate::scene::Scene;
 use crate::shader::{Dialect, Mode};
 use crate::stages::{Stage, StageSeconds};
-use crate::state::{Bound, Launched, Shown, State, bytes_per_path};
-use crate::wavefront::Wavefront;
+use crate::state::{Bound, Launched, Shape, Shown, State};
 
 /// Paths under way at once: enough to fill a GPU.
 const PATHS: u32 = 1 << 21;
@@ -31,6 +30,8 @@ const PATHS: u32 = 1 << 21;
 pub struct WgpuRenderer<'g> {
     gpu: &'g Gpu,
     kernels: Compiled,
+    /// Of paths from lights, where a sample also has one of them for each pixel.
+    light_kernels: Option<Compiled>,
     state: State,
     places: Places,
     layers: Layers,
@@ -51,12 +52,6 @@ impl GpuPose {
     pub fn memory_bytes(&self) -> u64 {
         self.scene.bytes
     }
-}
-
-/// Kernels of either mapping.
-enum Compiled {
-    Wavefront(Wavefront),
-    Megakernel(Megakernel),
 }
 
 impl<'g> WgpuRenderer<'g> {
@@ -91,27 +86,34 @@ impl<'g> WgpuRenderer<'g> {
         bvh: &Bvh<4>,
         size: [u32; 2],
     ) -> Result<Self, Error> {
-        let (layers, stride) = (kernels.layers, kernels.layers.stride());
+        let layers = kernels.layers;
+        let lights = kernels.of(PathOrigin::Lights);
+        let shape = Shape {
+            queues: kernels.queues,
+            stride: layers.stride(),
+            has_light_paths: lights.is_some(),
+        };
         let places = Places::new(size);
-        let slots = slots(gpu, places, stride);
+        let slots = slots(gpu, places, shape);
         let queued = match kernels.mapping {
             Mapping::Wavefront => slots,
             Mapping::Megakernel => 1,
         };
         let scene = Scene::new(gpu, &data.buffers(), bvh, None)?;
-        let state = State::new(gpu, kernels.queues, slots, queued, stride);
-        let compiled = match kernels.mapping {
-            Mapping::Wavefront => Compiled::Wavefront(Wavefront::new(gpu, mode, kernels, &state)?),
-            Mapping::Megakernel => {
-                Compiled::Megakernel(Megakernel::new(gpu, mode, kernels, &state)?)
-            }
-        };
+        let state = State::new(gpu, shape, slots, queued);
+        let compile = |texts| Compiled::new(gpu, mode, kernels.mapping, texts, &state);
+        let camera = kernels
+            .of(PathOrigin::Camera)
+            .ok_or(Error::NoKernel { name: "emit" })?;
+        let compiled = compile(camera)?;
+        let light_kernels = lights.map(compile).transpose()?;
         gpu.check()?;
         let memory = scene.bytes + state.bytes;
         let bound = state.bound(gpu, &scene);
         Ok(Self {
             gpu,
             kernels: compiled,
+            light_kernels,
             state,
             places,
             layers,
@@ -143,7 +145,11 @@ impl<'g> WgpuRenderer<'g> {
         let mut seconds = StageSeconds::default();
         let launched = self.launch(&self.first, &settings, 0, &mut seconds)?;
         self.state
-            .collect(self.gpu, &launched, &mut seconds, |_| ())?;
+            .collect(self.gpu, &launched, &mut seconds, |_, _| ())?;
+        if let Some(kernels) = &self.light_kernels {
+            let pass = self.light_pass(kernels, &self.first, &options);
+            pass.warm_up(&mut seconds)?;
+        }
         Ok(())
     }
 
@@ -160,13 +166,29 @@ impl<'g> WgpuRenderer<'g> {
             pose: &pose.bound,
         };
         let bytes = 4 * u64::from(settings.count) * self.layers.stride() as u64;
-        match &self.kernels {
-            Compiled::Wavefront(kernels) => {
-                kernels.launch(gpu, shown, settings, (staging, bytes), seconds)
-            }
-            Compiled::Megakernel(kernels) => {
-                Ok(kernels.launch(gpu, shown, settings, (staging, bytes)))
-            }
+        let returns = (staging, bytes);
+        self.kernels
+            .launch(gpu, shown, settings, returns, seconds, |_, _| ())
+    }
+
+    /// What a pass of light paths needs that are traced by these kernels.
+    fn light_pass<'a>(
+        &'a self,
+        kernels: &'a Compiled,
+        pose: &'a GpuPose,
+        options: &TracerOptions,
+    ) -> LightPass<'a> {
+        let first_packet = pose.scene.first_packet;
+        let places = self.places;
+        LightPass {
+            gpu: self.gpu,
+            kernels,
+            state: Shown {
+                state: &self.state,
+                pose: &pose.bound,
+            },
+            settings: places.settings_of_lights(options, self.slots, first_packet),
+            slots: self.slots,
         }
     }
 
@@ -213,26 +235,59 @@ impl<'g> WgpuRenderer<'g> {
         let pose = pose.unwrap_or(&self.first);
         let mut counters = Counters::default();
         let mut seconds = StageSeconds::default();
-        let mut whole = Vec::new();
-        let mut before: Option<Launched> = None;
-        // The processor adds the samples of one launch while the device is at the next.
-        for (index, settings) in self.launches(pose, pass, options).enumerate() {
-            let launched = self.launch(pose, &settings, index % 2, &mut seconds)?;
-            if let Some(before) = before.replace(launched) {
-                self.finish(&before, film, &mut whole, &mut counters, &mut seconds)?;
+        let mut add = |pass: Pass, splats: Option<&Splats>, did: (&mut Counters, &mut _)| {
+            let (counters, seconds) = did;
+            self.add_pass(pose, film, pass, options, splats, counters, seconds)
+        };
+        match &self.light_kernels {
+            None => add(pass, None, (&mut counters, &mut seconds))?,
+            Some(kernels) => {
+                let lights = self.light_pass(kernels, pose, options);
+                for part in Splats::parts(pass, options.image) {
+                    let splats = lights.splats(part, options.image, &mut counters, &mut seconds)?;
+                    add(part, Some(&splats), (&mut counters, &mut seconds))?;
+                }
             }
         }
-        if let Some(last) = before {
-            self.finish(&last, film, &mut whole, &mut counters, &mut seconds)?;
-        }
-        let [width, height] = options.image.map(u64::from);
-        counters.camera_rays = width * height * u64::from(pass.count);
         counters.emit = seconds[Stage::Emit as usize];
         counters.trace_camera = seconds[Stage::TraceCamera as usize];
         counters.trace_bounce = seconds[Stage::TraceOn as usize];
         counters.sort = seconds[Stage::Sort as usize];
         counters.shade = seconds[Stage::Shade as usize];
         Ok(counters)
+    }
+
+    /// Adds samples of paths from the camera, and what light paths bring to them.
+    fn add_pass(
+        &self,
+        pose: &GpuPose,
+        film: &mut [FilmTile],
+        pass: Pass,
+        options: &TracerOptions,
+        splats: Option<&Splats>,
+        counters: &mut Counters,
+        seconds: &mut StageSeconds,
+    ) -> Result<(), Error> {
+        let samples = Samples {
+            places: self.places,
+            layers: self.layers,
+            cost_map: self.cost_map,
+        };
+        let mut adding = Adding::new(samples, film, splats);
+        let mut before: Option<Launched> = None;
+        // The processor adds the samples of one launch while the device is at the next.
+        for (index, settings) in self.launches(pose, pass, options).enumerate() {
+            let launched = self.launch(pose, &settings, index % 2, seconds)?;
+            if let Some(before) = before.replace(launched) {
+                self.finish(&before, &mut adding, counters, seconds)?;
+            }
+        }
+        if let Some(last) = before {
+            self.finish(&last, &mut adding, counters, seconds)?;
+        }
+        let [width, height] = options.image.map(u64::from);
+        counters.camera_rays += width * height * u64::from(pass.count);
+        Ok(())
     }
 
     /// The launches of a pass: of whole samples, or of parts of one sample of a large image.
@@ -257,74 +312,35 @@ impl<'g> WgpuRenderer<'g> {
             })
     }
 
-    /// Waits for a launch, and adds its samples to the film as soon as they are whole; `parts` has what is not yet.
+    /// Waits for a launch, and adds its samples to the film as soon as they are whole.
     fn finish(
         &self,
         launched: &Launched,
-        film: &mut [FilmTile],
-        parts: &mut Vec<f32>,
+        adding: &mut Adding<'_>,
         counters: &mut Counters,
         seconds: &mut StageSeconds,
     ) -> Result<(), Error> {
-        let sample = self.places.count() as usize * self.layers.stride();
         let mut film_seconds = 0.0;
-        let did = self.state.collect(self.gpu, launched, seconds, |values| {
+        let take = |_: &_, values: &[f32]| {
             let start = Instant::now();
-            if values.len() >= sample {
-                self.add_to(film, values);
-            } else {
-                parts.extend_from_slice(values);
-                if parts.len() == sample {
-                    self.add_to(film, parts);
-                    parts.clear();
-                }
-            }
+            adding.take(values);
             film_seconds = start.elapsed().as_secs_f64();
-        })?;
+        };
+        let did = self.state.collect(self.gpu, launched, seconds, take)?;
         counters.film += film_seconds;
         counters.bounce_rays += u64::from(did.bounce_rays);
         counters.shadow_rays += u64::from(did.shadow_rays);
         Ok(())
     }
-
-    /// Adds whole samples, `values[sample][place][channel]`.
-    fn add_to(&self, film: &mut [FilmTile], values: &[f32]) {
-        let stride = self.layers.stride();
-        film.par_iter_mut().for_each(|tile| {
-            let rect = tile.rect();
-            let mut of_tile = Vec::with_capacity(rect.area() * stride);
-            for sample in values.chunks_exact(self.places.count() as usize * stride) {
-                of_tile.clear();
-                for y in rect.y..rect.y + rect.height {
-                    for x in rect.x..rect.x + rect.width {
-                        let row = range(self.places.of(x, y), 1, stride);
-                        let first = of_tile.len();
-                        of_tile.extend_from_slice(&sample[row]);
-                        if let Some(map) = self.cost_map {
-                            let color = map.color(of_tile[first] as u32);
-                            of_tile[first..first + Layers::RADIANCE].copy_from_slice(&color);
-                        }
-                    }
-                }
-                tile.add(&of_tile);
-            }
-        });
-    }
-}
-
-/// Where the numbers of some samples stand.
-fn range(first: u32, count: u32, stride: usize) -> Range<usize> {
-    let first = first as usize * stride;
-    first..first + count as usize * stride
 }
 
 /// How many paths are under way at once.
-fn slots(gpu: &Gpu, places: Places, stride: usize) -> u32 {
+fn slots(gpu: &Gpu, places: Places, shape: Shape) -> u32 {
     let limits = gpu.device.limits();
     let most_bytes = limits
         .max_storage_buffer_binding_size
         .min(limits.max_buffer_size);
-    let fitting = most_bytes / bytes_per_path(stride);
+    let fitting = most_bytes / shape.bytes_per_path();
     let most = u64::from(PATHS)
         .min(fitting)
         .min(64 * u64::from(limits.max_compute_workgroups_per_dimension)) as u32;

@@ -14,17 +14,41 @@ use crate::launch::Settings;
 use crate::scene::Scene;
 use crate::stages::{Clock, Laps, StageSeconds};
 
-/// Bytes of a path, a shadow ray and the entries of a path in the queues.
+/// Bytes of a path, of one in a scene with light paths, a shadow ray and the entries of a path in the queues.
 const PATH: u64 = 64;
+const PATH_OF_EITHER_END: u64 = 80;
 const SHADOW_RAY: u64 = 48;
 const ENTRIES: u64 = 12;
 /// Words of the queues before what there is of each program, and words of each program.
-const HEADER: usize = 6;
+const HEADER: usize = 7;
 const OF_QUEUE: usize = 3;
 
-/// Bytes that a path takes, with so many numbers a sample.
-pub(crate) fn bytes_per_path(stride: usize) -> u64 {
-    PATH + SHADOW_RAY + ENTRIES + 4 * stride as u64
+/// Numbers of a splat.
+const SPLAT: u64 = 4;
+
+/// What sizes of buffers depend on.
+#[derive(Clone, Copy)]
+pub(crate) struct Shape {
+    /// Queues of hits.
+    pub(crate) queues: usize,
+    /// Numbers of a sample.
+    pub(crate) stride: usize,
+    /// Paths begin at both ends.
+    pub(crate) has_light_paths: bool,
+}
+
+impl Shape {
+    fn path(self) -> u64 {
+        match self.has_light_paths {
+            true => PATH_OF_EITHER_END,
+            false => PATH,
+        }
+    }
+
+    /// Bytes that a path takes.
+    pub(crate) fn bytes_per_path(self) -> u64 {
+        self.path() + SHADOW_RAY + ENTRIES + 4 * self.stride as u64
+    }
 }
 
 /// Buffers, bound.
@@ -104,6 +128,7 @@ pub(crate) struct Header {
     shadows: u32,
     pub(crate) bounce_rays: u32,
     pub(crate) shadow_rays: u32,
+    pub(crate) splats: u32,
 }
 
 impl Header {
@@ -117,20 +142,15 @@ const _: () = assert!(size_of::<Header>() == 4 * HEADER);
 
 impl State {
     /// Buffers for this many paths under way, and as many of them in queues.
-    pub(crate) fn new(
-        gpu: &Gpu,
-        queue_count: usize,
-        slots: u32,
-        queued: u32,
-        stride: usize,
-    ) -> Self {
+    pub(crate) fn new(gpu: &Gpu, shape: Shape, slots: u32, queued: u32) -> Self {
+        let queue_count = shape.queues;
         let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         let [slots, queued] = [slots, queued].map(u64::from);
-        let paths = gpu.buffer("paths", queued * PATH, storage);
+        let paths = gpu.buffer("paths", queued * shape.path(), storage);
         let shadow_rays = gpu.buffer("shadow rays", queued * SHADOW_RAY, storage);
         let header = 4 * (HEADER + OF_QUEUE * queue_count) as u64;
         let queues = gpu.buffer("queues", header + queued * ENTRIES, storage);
-        let samples = gpu.buffer("samples", slots * 4 * stride as u64, storage);
+        let samples = gpu.buffer("samples", slots * 4 * shape.stride as u64, storage);
         let size = size_of::<Settings>() as u64;
         let settings = gpu.buffer("settings", size, BufferUsages::UNIFORM);
         let arguments = gpu.buffer(
@@ -165,7 +185,7 @@ impl State {
             staging: [(); 2].map(|()| {
                 gpu.device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("staging"),
-                    size: SAMPLES_AT + slots * 4 * stride as u64,
+                    size: SAMPLES_AT + slots * 4 * shape.stride as u64,
                     usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
                     mapped_at_creation: false,
                 })
@@ -193,6 +213,22 @@ impl State {
                 group(gpu, paths_layout, &of_paths),
             ],
         }
+    }
+
+    /// Splats that fit where samples are kept.
+    pub(crate) fn splats_that_fit(&self) -> u64 {
+        self.samples.size() / (4 * SPLAT)
+    }
+
+    /// Bytes of at most so many splats.
+    pub(crate) fn bytes_of_splats(&self, most: u64) -> u64 {
+        4 * SPLAT * most.min(self.splats_that_fit())
+    }
+
+    /// Empties the list of splats, which have been collected.
+    pub(crate) fn clear_splats(&self, gpu: &Gpu) {
+        let at = std::mem::offset_of!(Header, splats) as u64;
+        gpu.queue.write_buffer(&self.queues, at, &[0; 4]);
     }
 
     /// Sets everything up for a launch; returns its workgroups.
@@ -242,7 +278,7 @@ impl State {
         gpu: &Gpu,
         launched: &Launched,
         seconds: &mut StageSeconds,
-        samples: impl FnOnce(&[f32]),
+        samples: impl FnOnce(&Header, &[f32]),
     ) -> Result<Header, Error> {
         gpu.wait_for(Some(launched.submission.clone()))?;
         let staging = &self.staging[launched.staging];
@@ -251,8 +287,9 @@ impl State {
             let (head, of_samples) = mapped.split_at(SAMPLES_AT as usize);
             let (header, ticks) = head.split_at(TICKS_AT as usize);
             self.clock.add(&launched.laps, ticks, seconds);
-            samples(bytemuck::cast_slice(of_samples));
-            bytemuck::pod_read_unaligned(&header[..size_of::<Header>()])
+            let header = bytemuck::pod_read_unaligned(&header[..size_of::<Header>()]);
+            samples(&header, bytemuck::cast_slice(of_samples));
+            header
         };
         staging.unmap();
         Ok(header)

@@ -1,7 +1,7 @@
 //! The wavefront: kernels of one kind of work each, between which paths wait in queues.
 
 use rayon::prelude::*;
-use residual_wgsl::KernelSet;
+use residual_wgsl::KernelTexts;
 use wgpu::{ComputePass, ComputePipeline};
 
 use crate::error::Error;
@@ -9,10 +9,10 @@ use crate::gpu::Gpu;
 use crate::launch::Settings;
 use crate::shader::{Mode, pipeline};
 use crate::stages::{Laps, Stage, StageSeconds};
-use crate::state::{Launched, Shown, State};
+use crate::state::{Header, Launched, Shown, State};
 
 /// Vertices of paths between two looks at whether any path is left.
-const VERTICES: u32 = 16;
+pub(crate) const VERTICES: u32 = 16;
 
 /// The kernels.
 pub(crate) struct Wavefront {
@@ -33,7 +33,7 @@ impl Wavefront {
     pub(crate) fn new(
         gpu: &Gpu,
         mode: Mode,
-        kernels: &KernelSet,
+        kernels: KernelTexts<'_>,
         state: &State,
     ) -> Result<Self, Error> {
         let text = |name: &'static str| kernels.text(name).ok_or(Error::NoKernel { name });
@@ -55,7 +55,8 @@ impl Wavefront {
         })
     }
 
-    /// Renders `settings.count` samples, whose `bytes` are to come back through one of the staging buffers.
+    /// Renders `settings.count` samples, whose `bytes` are to come back through one of the staging buffers. `meanwhile` gets what has
+    /// come back whenever the device looks whether any path is left; splats then begin anew.
     ///
     /// # Errors
     /// If the device fails.
@@ -66,6 +67,7 @@ impl Wavefront {
         settings: &Settings,
         (staging, bytes): (usize, u64),
         seconds: &mut StageSeconds,
+        mut meanwhile: impl FnMut(&Header, &[f32]),
     ) -> Result<Launched, Error> {
         let groups = state.begin(gpu, settings);
         let mut done = 0;
@@ -97,7 +99,8 @@ impl Wavefront {
             }
             done += vertices;
             // Long paths are rare: is any left?
-            let header = state.collect(gpu, &launched, seconds, |_| ())?;
+            let header = state.collect(gpu, &launched, seconds, &mut meanwhile)?;
+            state.clear_splats(gpu);
             if header.is_done() {
                 let encoder = gpu.device.create_command_encoder(&Default::default());
                 return Ok(state.submit(gpu, encoder, Laps::default(), staging, bytes));

@@ -181,6 +181,10 @@ impl<'a> GpuPasses<'a> {
     ) -> Result<Counters> {
         self.copy(renderer, pose)?;
         let copied = self.copied.get(&pose);
+        if self.driver.plan.structure.tracer.has_light_paths() {
+            // It would need light paths of its own for all pixels, of which it has few.
+            film.drop_second_set();
+        }
         // The second set of samples, of few pixels, is the processor's: it would leave most of a GPU idle.
         let (first, second) = film.sets_mut();
         let (of_second, of_first) = std::thread::scope(|scope| {

@@ -34,6 +34,7 @@ fn media(priorities: &[i32]) -> SceneData {
             albedo: [0.0; 3].into(),
             anisotropy: 0.0,
             above: above(*priority),
+            around_camera: 0,
         };
         record.append_to(data.buffer_mut(Buffer::Media));
     }
@@ -106,7 +107,8 @@ fn nested_bodies_are_those_that_were_entered_and_not_left() {
                 let beyond = there(&after, priorities);
                 let path = path(d, packed);
                 assert_eq!(Nested.medium(d, path.state), Uint(here));
-                let crossing = Nested.crossing(d, &path, &surface, Uint(interior));
+                let crossing =
+                    Nested.crossing(d, path.state.media(d), surface.front, Uint(interior));
                 let goes_before = |body: u32| {
                     body != 0 && priorities[body as usize - 1] > priorities[interior as usize - 1]
                 };
@@ -139,25 +141,12 @@ fn too_many_bodies_are_forgotten_from_below() {
     let data = media(&priorities);
     let buffers = data.buffers();
     let d = Scalar::new(&buffers);
-    let hit = SurfaceHit {
-        u: 0.2,
-        v: 0.2,
-        prim: Uint(0),
-    };
-    let front = Surface::new(d, Attributes::NONE, &hit, vec3(0.0, 0.0, -1.0));
-    let back = Surface::new(d, Attributes::NONE, &hit, vec3(0.0, 0.0, 1.0));
     let mut packed = 0;
     for body in [3, 1, 6, 2, 5, 4] {
-        packed = Nested
-            .crossing(d, &path(d, packed), &front, Uint(body))
-            .beyond
-            .0;
+        packed = Nested.crossing(d, Uint(packed), true, Uint(body)).beyond.0;
     }
     for (left, then) in [(6, 5), (1, 5), (5, 4), (2, 4), (4, 3), (3, 0)] {
-        packed = Nested
-            .crossing(d, &path(d, packed), &back, Uint(left))
-            .beyond
-            .0;
+        packed = Nested.crossing(d, Uint(packed), false, Uint(left)).beyond.0;
         let state = path(d, packed).state;
         assert_eq!(Nested.medium(d, state), Uint(then), "after {left}");
     }
@@ -269,6 +258,7 @@ fn rays_get_as_far_as_their_colours_do() {
         albedo: vec3(0.9, 0.5, 0.7),
         anisotropy: 0.0,
         above: Uint(1),
+        around_camera: Uint(0),
     };
     let matter = AbsorptionAndScattering {
         sampler: Independent,

@@ -2,7 +2,7 @@
 
 use crate::functions::Recorded;
 
-/// How a path goes on: statements on what `step` has.
+/// How a path goes on: statements on what `step` has, in which `SHADOW` stands for its shadow ray and `PATH` for the path behind it.
 pub(crate) struct WayOn {
     pub(crate) indent: &'static str,
     pub(crate) shadow: &'static [&'static str],
@@ -14,12 +14,9 @@ pub(crate) const QUEUED: WayOn = WayOn {
     indent: "        ",
     shadow: &[
         "shadow = atomicAdd(&shadow_count, 1u);",
-        "shadow_ray = ShadowRay(step.shadow_org, step.shadow_tmax, step.shadow_dir, slot, step.shadow_contribution);",
+        "shadow_ray = SHADOW;",
     ],
-    bounce: &[
-        "next = atomicAdd(&next_count, 1u);",
-        "paths[slot] = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, step.bounce_state, vec4u(0u));",
-    ],
+    bounce: &["next = atomicAdd(&next_count, 1u);", "paths[slot] = PATH;"],
 };
 
 /// Through queues, in one of the cases of a kernel.
@@ -31,18 +28,13 @@ pub(crate) const QUEUED_IN_CASE: WayOn = WayOn {
 /// In the same thread.
 pub(crate) const FOLLOWED: WayOn = WayOn {
     indent: "                ",
-    shadow: &[
-        "is_shadow = true;",
-        "shadow = ShadowRay(step.shadow_org, step.shadow_tmax, step.shadow_dir, slot, step.shadow_contribution);",
-    ],
-    bounce: &[
-        "goes_on = true;",
-        "path = Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, step.bounce_state, vec4u(0u));",
-    ],
+    shadow: &["is_shadow = true;", "shadow = SHADOW;"],
+    bounce: &["goes_on = true;", "path = PATH;"],
 };
 
-/// The call of a recorded function where there are `slot`, `path`, or what emission and alpha tests have instead.
-pub(crate) fn call(recorded: &Recorded) -> String {
+/// The call of a recorded function where there are `slot`, `path`, or what emission and alpha tests have instead. Paths of scenes
+/// with light paths keep the index of their points.
+pub(crate) fn call(recorded: &Recorded, has_light_paths: bool) -> String {
     let name = &recorded.function.name;
     let is_alpha_test = name.ends_with("alpha_test");
     let argument = |parameter: &str| match parameter {
@@ -51,6 +43,7 @@ pub(crate) fn call(recorded: &Recorded) -> String {
         "width" => "settings.width",
         "height" => "settings.height",
         "seed" => "settings.seed",
+        "index" if has_light_paths => "path.index",
         "sample" | "index" => "sample_of(slot)",
         "max_depth" => "settings.max_depth",
         "roulette_from" => "settings.roulette_from",
@@ -69,6 +62,7 @@ pub(crate) fn call(recorded: &Recorded) -> String {
         "pdf" => "path.pdf",
         "pixel" => "path.pixel",
         "state" => "path.state",
+        "rivals" => "path.rivals",
         other => unreachable!("no recorded function has a parameter {other}"),
     };
     let parameters = &recorded.function.parameters;

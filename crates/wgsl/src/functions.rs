@@ -66,22 +66,24 @@ pub struct ProgramFunctions {
 }
 
 impl SceneFunctions {
-    /// Records them.
-    pub fn of(structure: &Structure) -> Self {
-        let outcome = Outcome::of(structure);
+    /// Records them, of paths that begin here: at the camera, but of structures that [have light
+    /// paths](residual_render::tracer::TracerNode::has_light_paths).
+    pub fn of(structure: &Structure, origin: PathOrigin) -> Self {
+        let recorder = Recorder { structure, origin };
+        let outcome = recorder.outcome();
         let programs = structure.programs.iter().enumerate();
         let programs = programs.map(|(index, program)| ProgramFunctions {
             description: describe(index, program),
-            step: step(index, program, structure, outcome),
+            step: recorder.step(index, program, outcome),
             alpha_test: program
                 .alpha_test
                 .as_ref()
                 .map(|node| alpha_test(index, node)),
         });
         Self {
-            emit: emit(structure),
+            emit: recorder.emit(),
             programs: programs.collect(),
-            miss: miss(structure),
+            miss: recorder.miss(),
             program_of: program_of(),
         }
     }
@@ -109,36 +111,6 @@ fn hit(tape: &Tape) -> SurfaceHit<Record<'_>> {
     }
 }
 
-/// A path, as parameters.
-fn path(tape: &Tape) -> Path<Record<'_>> {
-    let d = Record::new(tape);
-    Path {
-        ray: PathRay::unbounded(d, tape.vector("org"), tape.vector("dir")),
-        throughput: tape.vector("throughput"),
-        pdf: tape.real("pdf"),
-        rivals: d.lit(0.0),
-        key: SampleKey {
-            pixel: tape.word("pixel"),
-            index: tape.word("index"),
-        },
-        state: PathState(tape.word("state")),
-    }
-}
-
-/// The tracer's options that matter along a path, as parameters.
-fn settings(tape: &Tape) -> Settings<Record<'_>> {
-    let d = Record::new(tape);
-    Settings {
-        // The width and the seed matter where a path begins.
-        image: [d.lit(1.0), tape.real("height")],
-        seed: d.uint(0),
-        max_depth: tape.word("max_depth"),
-        roulette_from: tape.word("roulette_from"),
-        reach: tape.real("reach"),
-        origin: PathOrigin::Camera,
-    }
-}
-
 /// Whether the structure's tracer ever has a contribution, a shadow ray, a bounce at a hit: all programs return the
 /// same, so that one kernel can take over from another.
 #[derive(Clone, Copy, Default)]
@@ -148,74 +120,118 @@ struct Outcome {
     bounce: bool,
 }
 
-impl Outcome {
-    /// Of all programs.
-    fn of(structure: &Structure) -> Self {
-        let of_programs = structure.programs.iter().map(|program| {
-            with_step(&Tape::new(), structure, program, |step| Self {
+/// Records the steps of a structure's paths that begin at one end.
+#[derive(Clone, Copy)]
+struct Recorder<'s> {
+    structure: &'s Structure,
+    origin: PathOrigin,
+}
+
+impl Recorder<'_> {
+    /// Paths of both ends are weighed against each other.
+    fn has_rivals(self) -> bool {
+        self.structure.tracer.has_light_paths()
+    }
+
+    /// A path, as parameters.
+    fn path(self, tape: &Tape) -> Path<Record<'_>> {
+        let d = Record::new(tape);
+        Path {
+            ray: PathRay::unbounded(d, tape.vector("org"), tape.vector("dir")),
+            throughput: tape.vector("throughput"),
+            pdf: tape.real("pdf"),
+            rivals: match self.has_rivals() {
+                true => tape.real("rivals"),
+                false => d.lit(0.0),
+            },
+            key: SampleKey {
+                pixel: tape.word("pixel"),
+                index: tape.word("index"),
+            },
+            state: PathState(tape.word("state")),
+        }
+    }
+
+    /// The tracer's options that matter along a path, as parameters.
+    fn settings(self, tape: &Tape) -> Settings<Record<'_>> {
+        let d = Record::new(tape);
+        Settings {
+            // The width matters where a path begins, or where the camera sees it, and the seed where it begins.
+            image: match self.origin {
+                PathOrigin::Camera => [d.lit(1.0), tape.real("height")],
+                PathOrigin::Lights => ["width", "height"].map(|name| tape.real(name)),
+            },
+            seed: d.uint(0),
+            max_depth: tape.word("max_depth"),
+            roulette_from: tape.word("roulette_from"),
+            reach: tape.real("reach"),
+            origin: self.origin,
+        }
+    }
+
+    /// What ever comes of a hit, on any program.
+    fn outcome(self) -> Outcome {
+        let of_programs = self.structure.programs.iter().map(|program| {
+            self.with_step(&Tape::new(), program, |step, _| Outcome {
                 seen: step.seen.is_some(),
                 shadow: step.shadow.is_some(),
                 bounce: step.bounce.is_some(),
             })
         });
-        of_programs.fold(Self::default(), |all, one| Self {
+        of_programs.fold(Outcome::default(), |all, one| Outcome {
             seen: all.seen | one.seen,
             shadow: all.shadow | one.shadow,
             bounce: all.bounce | one.bounce,
         })
     }
-}
 
-/// Records the step at a hit on a program.
-fn with_step<'t, R>(
-    tape: &'t Tape,
-    structure: &Structure,
-    program: &Program,
-    f: impl FnOnce(Step<Record<'t>>) -> R,
-) -> R {
-    let d = Record::new(tape);
-    let (hit, path) = (hit(tape), path(tape));
-    let scene = Interpreted::<Record<'_>>::new(structure, &Buffers::EMPTY);
-    let tracer = scene.tracer(settings(tape));
-    let material = BoxedMaterial::new(program);
-    f(tracer::shade(
-        d,
-        &tracer,
-        &path,
-        &hit,
-        &material,
-        scene.lights(),
-    ))
-}
-
-/// The step at a hit on a program; `None` where nothing ever comes of a hit.
-fn step(
-    index: usize,
-    program: &Program,
-    structure: &Structure,
-    outcome: Outcome,
-) -> Option<Recorded> {
-    let Outcome {
-        seen,
-        shadow,
-        bounce,
-    } = outcome;
-    if !(seen || shadow || bounce || structure.layers != Layers::NONE) {
-        return None;
+    /// Records the step at a hit on a program; `f` also gets the layers that are filled.
+    fn with_step<'t, R>(
+        self,
+        tape: &'t Tape,
+        program: &Program,
+        f: impl FnOnce(Step<Record<'t>>, Layers) -> R,
+    ) -> R {
+        let d = Record::new(tape);
+        let (hit, path) = (hit(tape), self.path(tape));
+        let scene = Interpreted::<Record<'_>>::new(self.structure, &Buffers::EMPTY);
+        let tracer = scene.tracer(self.settings(tape));
+        let material = BoxedMaterial::new(program);
+        let step = tracer::shade(d, &tracer, &path, &hit, &material, scene.lights());
+        f(step, tracer.layers())
     }
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let zero = d.lit(0.0);
-    let none = Vec3::splat(zero);
-    let outputs = with_step(&tape, structure, program, |step| {
+
+    /// The step at a hit on a program; `None` where nothing ever comes of a hit.
+    fn step(self, index: usize, program: &Program, outcome: Outcome) -> Option<Recorded> {
+        let tape = Tape::new();
+        let d = Record::new(&tape);
+        let outputs = self.with_step(&tape, program, |step, set| {
+            self.outputs(d, &step, set, outcome)
+        });
+        (!outputs.is_empty()).then(|| Recorded {
+            function: tape.function(format!("program_{index}_step"), outputs),
+            result: "Step",
+            comment: "What becomes of a path that hits a surface of this program.".to_owned(),
+        })
+    }
+
+    fn outputs<'t>(
+        self,
+        d: Record<'t>,
+        step: &Step<Record<'t>>,
+        set: Layers,
+        outcome: Outcome,
+    ) -> Outputs<'t> {
+        let zero = d.lit(0.0);
+        let none = Vec3::splat(zero);
         let mut outputs = Outputs::new();
-        if seen {
+        if outcome.seen {
             outputs = outputs.vector("seen", step.seen.unwrap_or(none));
         }
         if let Some(features) = &step.features {
-            outputs = layers(outputs, features, structure.layers);
+            outputs = layers(outputs, features, set);
         }
-        if shadow {
+        if outcome.shadow {
             let (org, dir, tmax, contribution, active) = match step.shadow {
                 Some(s) => (s.ray.org, s.ray.dir, s.ray.tmax, s.contribution, s.active),
                 None => (none, none, zero, none, d.truth(false)),
@@ -226,18 +242,23 @@ fn step(
                 .real("shadow_tmax", tmax)
                 .vector("shadow_contribution", contribution)
                 .truth("shadow_active", active);
+            if self.origin == PathOrigin::Lights {
+                let pixel = step.shadow.and_then(|shadow| shadow.pixel);
+                outputs = outputs.word("shadow_pixel", pixel.unwrap_or(d.uint(0)));
+            }
         }
-        if bounce {
-            let (org, dir, throughput, pdf, state, active) = match step.bounce {
+        if outcome.bounce {
+            let (org, dir, throughput, pdf, rivals, state, active) = match step.bounce {
                 Some(b) => (
                     b.path.ray.org,
                     b.path.ray.dir,
                     b.path.throughput,
                     b.path.pdf,
+                    b.path.rivals,
                     b.path.state.0,
                     b.active,
                 ),
-                None => (none, none, none, zero, d.uint(0), d.truth(false)),
+                None => (none, none, none, zero, zero, d.uint(0), d.truth(false)),
             };
             outputs = outputs
                 .vector("bounce_org", org)
@@ -246,14 +267,88 @@ fn step(
                 .real("bounce_pdf", pdf)
                 .word("bounce_state", state)
                 .truth("bounce_active", active);
+            if self.has_rivals() {
+                outputs = outputs.real("bounce_rivals", rivals);
+            }
         }
         outputs
-    });
-    Some(Recorded {
-        function: tape.function(format!("program_{index}_step"), outputs),
-        result: "Step",
-        comment: "What becomes of a path that hits a surface of this program.".to_owned(),
-    })
+    }
+
+    /// What rays that hit nothing see; nothing where the tracer sees nothing.
+    fn miss(self) -> Option<Recorded> {
+        let tape = Tape::new();
+        let d = Record::new(&tape);
+        let path = self.path(&tape);
+        let scene = Interpreted::<Record<'_>>::new(self.structure, &Buffers::EMPTY);
+        let tracer = scene.tracer(self.settings(&tape));
+        let mut outputs = Outputs::new();
+        if let Some(seen) = tracer.on_miss(d, &path, scene.lights()) {
+            outputs = outputs.vector("seen", seen);
+        }
+        let set = tracer.layers();
+        if set != Layers::NONE {
+            outputs = layers(outputs, &Features::of_miss(d, set, &path), set);
+        }
+        (!outputs.is_empty()).then(|| Recorded {
+            function: tape.function("miss", outputs),
+            result: "Miss",
+            comment: "What a path sees whose ray hits nothing.".to_owned(),
+        })
+    }
+
+    /// Where paths begin.
+    fn emit(self) -> Recorded {
+        let tape = Tape::new();
+        let d = Record::new(&tape);
+        let pixel = ["x", "y"].map(|name| tape.word(name));
+        let sample = tape.word("sample");
+        let scene = Interpreted::<Record<'_>>::new(self.structure, &Buffers::EMPTY);
+        let tracer = scene.tracer(Settings {
+            image: ["width", "height"].map(|name| tape.real(name)),
+            seed: tape.word("seed"),
+            max_depth: d.uint(0),
+            roulette_from: d.uint(0),
+            reach: d.lit(0.0),
+            origin: self.origin,
+        });
+        let path = tracer.on_emit(d, scene.camera(), scene.lights(), pixel, sample);
+        let mut outputs = Outputs::new()
+            .vector("org", path.ray.org)
+            .vector("dir", path.ray.dir)
+            .word("pixel", path.key.pixel);
+        if self.has_rivals() {
+            outputs = outputs
+                .word("index", path.key.index)
+                .vector("throughput", path.throughput)
+                .real("pdf", path.pdf)
+                .real("rivals", path.rivals);
+        }
+        if self.structure.between.media.is_some() {
+            outputs = outputs.word("state", path.state.0);
+        }
+        let Structure {
+            camera, sampler, ..
+        } = self.structure;
+        let (result, comment) = match self.origin {
+            PathOrigin::Camera => (
+                "CameraPath",
+                format!(
+                    "{camera:?}, {sampler:?}: a path of throughput 1 through a place of the pixel at (x, y)."
+                ),
+            ),
+            PathOrigin::Lights => (
+                "LightPath",
+                format!(
+                    "{sampler:?}: a path from a light; of as many in an image as there are pixels, the one with the number of this."
+                ),
+            ),
+        };
+        Recorded {
+            function: tape.function("emit", outputs),
+            result,
+            comment,
+        }
+    }
 }
 
 /// The layers of a first vertex.
@@ -287,60 +382,6 @@ fn alpha_test(index: usize, node: &AlphaTestNode) -> Recorded {
         ),
         result: "",
         comment: "Whether the surface is there for this hit of the ray.".to_owned(),
-    }
-}
-
-/// What rays that hit nothing see; nothing where the tracer sees nothing.
-fn miss(structure: &Structure) -> Option<Recorded> {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let path = path(&tape);
-    let scene = Interpreted::<Record<'_>>::new(structure, &Buffers::EMPTY);
-    let tracer = scene.tracer(settings(&tape));
-    let seen = tracer.on_miss(d, &path, scene.lights());
-    let mut outputs = Outputs::new();
-    let is_needed = seen.is_some() || structure.layers != Layers::NONE;
-    if let Some(seen) = seen {
-        outputs = outputs.vector("seen", seen);
-    }
-    if structure.layers != Layers::NONE {
-        let features = Features::of_miss(d, structure.layers, &path);
-        outputs = layers(outputs, &features, structure.layers);
-    }
-    is_needed.then(|| Recorded {
-        function: tape.function("miss", outputs),
-        result: "Miss",
-        comment: "What a path sees whose ray hits nothing.".to_owned(),
-    })
-}
-
-/// Where paths begin.
-fn emit(structure: &Structure) -> Recorded {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let pixel = ["x", "y"].map(|name| tape.word(name));
-    let sample = tape.word("sample");
-    let scene = Interpreted::<Record<'_>>::new(structure, &Buffers::EMPTY);
-    let tracer = scene.tracer(Settings {
-        image: ["width", "height"].map(|name| tape.real(name)),
-        seed: tape.word("seed"),
-        max_depth: d.uint(0),
-        roulette_from: d.uint(0),
-        reach: d.lit(0.0),
-        origin: PathOrigin::Camera,
-    });
-    let path = tracer.on_emit(d, scene.camera(), scene.lights(), pixel, sample);
-    let outputs = Outputs::new()
-        .vector("org", path.ray.org)
-        .vector("dir", path.ray.dir)
-        .word("pixel", path.key.pixel);
-    Recorded {
-        function: tape.function("emit", outputs),
-        result: "CameraPath",
-        comment: format!(
-            "{:?}, {:?}: a path of throughput 1 through a place of the pixel at (x, y).",
-            structure.camera, structure.sampler
-        ),
     }
 }
 

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use residual_render::layer::Layers;
 use residual_render::program::Structure;
-use residual_render::tracer::{DebugView, TracerNode};
+use residual_render::tracer::{DebugView, PathOrigin, TracerNode};
 
 use crate::arithmetic::Arithmetic;
 use crate::kernels::{Kernels, Traits};
@@ -63,46 +63,56 @@ impl KernelSet {
             visits: shows_traversal,
             f64,
         };
-        let kernels = Kernels::new(structure, traits, arithmetic);
-        let mut texts = BTreeMap::new();
-        match mapping {
-            Mapping::Wavefront => {
-                texts.insert("control".to_owned(), kernels.control());
-                texts.insert("emit".to_owned(), kernels.emit());
-                texts.insert("scatter".to_owned(), kernels.scatter());
-                texts.insert("trace".to_owned(), kernels.trace());
-                let folded = kernels.folded();
-                if !folded.is_empty() {
-                    texts.insert(FOLDED.to_owned(), kernels.shade_folded());
-                }
-                let alone = |queue: &usize| !folded.contains(queue);
-                for queue in kernels.queues_with_steps().filter(alone) {
-                    texts.insert(format!("shade {queue}"), kernels.shade(queue));
-                }
-            }
-            Mapping::Megakernel => {
-                texts.insert("megakernel".to_owned(), kernels.megakernel());
-            }
-        }
-        Self {
+        let mut set = Self {
             mapping,
             layers: structure.layers,
             shows_traversal,
-            queues: kernels.queues(),
-            texts,
+            queues: structure.programs.len() + 1,
+            texts: BTreeMap::new(),
+        };
+        set.add(&Kernels::new(
+            structure,
+            PathOrigin::Camera,
+            traits,
+            arithmetic,
+        ));
+        if structure.tracer.has_light_paths() {
+            let origin = PathOrigin::Lights;
+            set.add(&Kernels::new(structure, origin, traits, arithmetic));
+        }
+        set
+    }
+
+    fn add(&mut self, kernels: &Kernels) {
+        let prefix = prefix(kernels.origin());
+        let mut add = |name: &str, text| self.texts.insert(format!("{prefix}{name}"), text);
+        match self.mapping {
+            Mapping::Wavefront => {
+                add("control", kernels.control());
+                add("emit", kernels.emit());
+                add("scatter", kernels.scatter());
+                add("trace", kernels.trace());
+                let folded = kernels.folded();
+                if !folded.is_empty() {
+                    add(FOLDED, kernels.shade_folded());
+                }
+                let alone = |queue: &usize| !folded.contains(queue);
+                for queue in kernels.queues_with_steps().filter(alone) {
+                    add(&format!("shade {queue}"), kernels.shade(queue));
+                }
+            }
+            Mapping::Megakernel => {
+                add("megakernel", kernels.megakernel());
+            }
         }
     }
 
-    /// The text of a kernel: `emit`, `trace`, `control`, `scatter`, or `megakernel`.
-    pub fn text(&self, name: &str) -> Option<&str> {
-        self.texts.get(name).map(String::as_str)
-    }
-
-    /// The kernels that shade, each with its queue; the one of folded queues has the number behind them.
-    pub fn shade(&self) -> impl Iterator<Item = (usize, &str)> {
-        let alone = |queue| Some((queue, self.text(&format!("shade {queue}"))?));
-        let folded = self.text(FOLDED).map(|text| (self.queues, text));
-        (0..self.queues).filter_map(alone).chain(folded)
+    /// The kernels of the paths that begin at one end; `None` if none do.
+    pub fn of(&self, origin: PathOrigin) -> Option<KernelTexts<'_>> {
+        let prefix = prefix(origin);
+        let is_of = |name: &String| name.starts_with(prefix);
+        let texts = KernelTexts { set: self, prefix };
+        self.texts.keys().any(is_of).then_some(texts)
     }
 
     /// The names of all kernels with their texts.
@@ -112,9 +122,40 @@ impl KernelSet {
     }
 }
 
+/// The kernels of paths that begin at one end.
+#[derive(Clone, Copy, Debug)]
+pub struct KernelTexts<'s> {
+    set: &'s KernelSet,
+    prefix: &'static str,
+}
+
+impl<'s> KernelTexts<'s> {
+    /// The text of a kernel: `emit`, `trace`, `control`, `scatter`, or `megakernel`.
+    pub fn text(self, name: &str) -> Option<&'s str> {
+        let name = format!("{}{name}", self.prefix);
+        self.set.texts.get(&name).map(String::as_str)
+    }
+
+    /// The kernels that shade, each with its queue; the one of folded queues has the number behind them.
+    pub fn shade(self) -> impl Iterator<Item = (usize, &'s str)> {
+        let queues = self.set.queues;
+        let alone = move |queue| Some((queue, self.text(&format!("shade {queue}"))?));
+        let folded = self.text(FOLDED).map(|text| (queues, text));
+        (0..queues).filter_map(alone).chain(folded)
+    }
+}
+
+/// What the names of kernels begin with.
+fn prefix(origin: PathOrigin) -> &'static str {
+    match origin {
+        PathOrigin::Camera => "",
+        PathOrigin::Lights => "lights: ",
+    }
+}
+
 /// The kernel of the queues whose steps are short.
 const FOLDED: &str = "shade folded";
-const HEAD: &str = "// residual kernels, version 2: ";
+const HEAD: &str = "// residual kernels, version 3: ";
 const KERNEL: &str = "// kernel: ";
 
 /// One text, which is read back.

@@ -2,6 +2,7 @@
 
 use residual_render::layer::Layers;
 use residual_render::program::Structure;
+use residual_render::tracer::{MAX_DEPTH, PathOrigin};
 
 use crate::arithmetic::Arithmetic;
 use crate::calls::{FOLLOWED, QUEUED, QUEUED_IN_CASE, WayOn, call};
@@ -32,6 +33,9 @@ const FOLLOW: &str = include_str!("wgsl/follow.wgsl");
 /// What a scene calls for, as texts for one adapter.
 pub struct Kernels {
     functions: SceneFunctions,
+    origin: PathOrigin,
+    /// Paths begin at both ends, in kernels of their own.
+    has_light_paths: bool,
     layers: Layers,
     traits: Traits,
     arithmetic: Arithmetic,
@@ -50,10 +54,17 @@ pub struct Traits {
 }
 
 impl Kernels {
-    /// The kernels of a structure.
-    pub fn new(structure: &Structure, traits: Traits, arithmetic: Arithmetic) -> Self {
+    /// The kernels of a structure's paths that begin at one end.
+    pub fn new(
+        structure: &Structure,
+        origin: PathOrigin,
+        traits: Traits,
+        arithmetic: Arithmetic,
+    ) -> Self {
         let mut kernels = Self {
-            functions: SceneFunctions::of(structure),
+            functions: SceneFunctions::of(structure, origin),
+            origin,
+            has_light_paths: structure.tracer.has_light_paths(),
             layers: structure.layers,
             traits,
             arithmetic,
@@ -61,6 +72,11 @@ impl Kernels {
         };
         kernels.folded = kernels.short_queues();
         kernels
+    }
+
+    /// Where their paths begin.
+    pub fn origin(&self) -> PathOrigin {
+        self.origin
     }
 
     /// How many queues of hits there are: one a program, and one for rays that hit nothing.
@@ -83,9 +99,10 @@ impl Kernels {
     /// Constants and structures of all kernels.
     fn constants(&self) -> String {
         format!(
-            "const WORKGROUP: u32 = {WORKGROUP}u;\nconst QUEUES: u32 = {}u;\nconst STRIDE: u32 = {}u;\nconst STACK: u32 = {STACK}u;\n\n{WAVEFRONT}",
+            "const WORKGROUP: u32 = {WORKGROUP}u;\nconst QUEUES: u32 = {}u;\nconst STRIDE: u32 = {}u;\nconst STACK: u32 = {STACK}u;\n\n{}",
             self.queues(),
             self.layers.stride(),
+            sections(WAVEFRONT, &self.section_names()),
         )
     }
 
@@ -93,7 +110,7 @@ impl Kernels {
         let mut module = Module::new(self.arithmetic);
         module.add_text(&self.constants());
         module.add_text(BINDINGS);
-        module.add_text(PATHS);
+        module.add_text(&sections(PATHS, &self.section_names()));
         module
     }
 
@@ -152,9 +169,37 @@ fn emit_paths(@builtin(global_invocation_id) id: vec3u) {{
         module.finish()
     }
 
+    fn call(&self, recorded: &Recorded) -> String {
+        call(recorded, self.has_light_paths)
+    }
+
     /// Makes the `path` of a `slot`, and clears its sample.
     fn start(&self) -> String {
-        let call = call(&self.functions.emit);
+        let call = self.call(&self.functions.emit);
+        let of_emit = |output: &str, otherwise: &str| {
+            let output = self.functions.emit.output("start", output);
+            output.unwrap_or_else(|| otherwise.to_owned())
+        };
+        let [pdf, throughput, state] = [
+            ("pdf", "0.0f"),
+            ("throughput", "vec3f(1.0f)"),
+            ("state", "1u"),
+        ]
+        .map(|(output, otherwise)| of_emit(output, otherwise));
+        let more = match self.has_light_paths {
+            true => ", start.rivals, start.index",
+            false => "",
+        };
+        let clear = match self.origin {
+            PathOrigin::Camera => {
+                "\
+    for (var k = 0u; k < STRIDE; k++) {
+        samples[slot * STRIDE + k] = 0.0f;
+    }
+"
+            }
+            PathOrigin::Lights => "",
+        };
         format!(
             "    let slot = id.x;
     if slot >= settings.count {{
@@ -162,11 +207,8 @@ fn emit_paths(@builtin(global_invocation_id) id: vec3u) {{
     }}
     let place = pixel_of(slot);
     let start = {call};
-    var path = Path(start.org, 0.0f, start.dir, start.pixel, vec3f(1.0f), 1u, vec4u(0u));
-    for (var k = 0u; k < STRIDE; k++) {{
-        samples[slot * STRIDE + k] = 0.0f;
-    }}
-"
+    var path = Path(start.org, {pdf}, start.dir, start.pixel, {throughput}, {state}, vec4u(0u){more});
+{clear}"
         )
     }
 
@@ -187,6 +229,11 @@ fn emit_paths(@builtin(global_invocation_id) id: vec3u) {{
             .iter()
             .any(|p| p.alpha_test.is_some());
         let mut names = vec![if f64 { "f64" } else { "f32" }];
+        names.push(match self.origin {
+            PathOrigin::Camera => "camera",
+            PathOrigin::Lights => "lights",
+        });
+        names.extend(self.has_light_paths.then_some("ends"));
         names.extend(sided.then_some("sided"));
         names.extend(visits.then_some("visits"));
         names.extend(has_alpha.then_some("alpha"));
@@ -198,7 +245,7 @@ fn emit_paths(@builtin(global_invocation_id) id: vec3u) {{
         for (index, program) in self.functions.programs.iter().enumerate() {
             if let Some(test) = &program.alpha_test {
                 module.add(test);
-                let call = call(test);
+                let call = self.call(test);
                 cases +=
                     &format!("        case {index}u: {{\n            return {call};\n        }}\n");
             }
@@ -290,16 +337,31 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
             shadow,
             bounce,
         } = way;
-        let mut body = format!("{indent}let step = {};\n", call(step));
+        let mut body = format!("{indent}let step = {};\n", self.call(step));
         let output = |name: &str| step.output("step", name);
         if let Some(seen) = output("seen") {
             body += &format!("{indent}add(slot, {seen});\n");
         }
         body += &self.keep_layers(step, indent);
+        let sample = match self.origin {
+            PathOrigin::Camera => "slot",
+            PathOrigin::Lights => "sample_in(step.shadow_pixel, slot)",
+        };
+        let shadow_ray = format!(
+            "ShadowRay(step.shadow_org, step.shadow_tmax, step.shadow_dir, {sample}, step.shadow_contribution)"
+        );
+        let more = match self.has_light_paths {
+            true => ", step.bounce_rivals, path.index",
+            false => "",
+        };
+        let next = format!(
+            "Path(step.bounce_org, step.bounce_pdf, step.bounce_dir, path.pixel, step.bounce_throughput, step.bounce_state, vec4u(0u){more})"
+        );
         for (kind, lines) in [("shadow", shadow), ("bounce", bounce)] {
             if let Some(active) = output(&format!("{kind}_active")) {
                 body += &format!("{indent}if {active} {{\n");
                 for line in *lines {
+                    let line = line.replace("SHADOW", &shadow_ray).replace("PATH", &next);
                     body += &format!("{indent}    {line}\n");
                 }
                 body += &format!("{indent}}}\n");
@@ -326,7 +388,9 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
         }
         match lines.is_empty() {
             true => lines,
-            false => format!("{indent}if path.state == 1u {{\n{lines}{indent}}}\n"),
+            false => {
+                format!("{indent}if (path.state & {MAX_DEPTH}u) == 1u {{\n{lines}{indent}}}\n")
+            }
         }
     }
 }

@@ -21,17 +21,23 @@ mod sections;
 pub use arithmetic::{Arithmetic, Division, Fma, SquareRoot};
 pub use bindings::Binding;
 pub use functions::{ProgramFunctions, Recorded, SceneFunctions};
-pub use kernel_set::{KernelSet, Mapping};
+pub use kernel_set::{KernelSet, KernelTexts, Mapping};
 pub use kernels::{Kernels, STACK, Traits, WORKGROUP, rays_kernel};
 pub use module::Module;
 
 use residual_render::domain::tape::Function;
 use residual_render::program::Structure;
+use residual_render::tracer::PathOrigin;
 
 /// The functions of a scene in one text: `emit`, for each program `program_K_step` and `_alpha_test`, and `miss`. What the
-/// scene does not call for is not there.
+/// scene does not call for is not there. Paths begin at the camera.
 pub fn scene_module(structure: &Structure) -> String {
-    let functions = SceneFunctions::of(structure);
+    scene_module_of(structure, PathOrigin::Camera)
+}
+
+/// The same of the paths of a structure with light paths that begin at one end.
+pub fn scene_module_of(structure: &Structure, origin: PathOrigin) -> String {
+    let functions = SceneFunctions::of(structure, origin);
     let mut module = Module::new(Arithmetic::default());
     module.add(&functions.emit);
     for program in &functions.programs {

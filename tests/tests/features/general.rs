@@ -131,6 +131,7 @@ fn a_renderer_for_everything_gives_the_same_bits() {
         albedo: [0.0; 3].into(),
         anisotropy: 0.0,
         above: 1,
+        around_camera: 0,
     };
     record.append_to(&mut outside);
     *everything.data.buffer_mut(Buffer::Media) = outside;

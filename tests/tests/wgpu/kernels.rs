@@ -7,11 +7,13 @@ use naga::compact::{KeepUnused, compact};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use residual_render::layer::{Layer, Layers};
 use residual_render::program::Structure;
-use residual_render::tracer::{DebugView, TracerNode};
+use residual_render::tracer::{AnySharing, DebugView, PathOrigin, TracerNode};
 use residual_scenegen::plan::{PlanOptions, plan};
 use residual_tests::{fixtures, read_scene, scenes, tiny};
 use residual_wgsl::{Arithmetic, Division, Fma, SquareRoot};
 use residual_wgsl::{Kernels, Traits};
+
+use crate::subject::Subject;
 
 /// Lines of the longest function that is allowed.
 const LONGEST: usize = 1_500;
@@ -24,7 +26,7 @@ const DOUBLE: Arithmetic = Arithmetic {
 };
 
 /// What is written by hand for all kernels; each is used by some kernel, and need not be by every one.
-const SHARED: [&str; 16] = [
+const SHARED: [&str; 17] = [
     "const NONE",
     "const QUEUES",
     "const STACK",
@@ -32,6 +34,7 @@ const SHARED: [&str; 16] = [
     "const WORKGROUP",
     "fn add",
     "fn pixel_of",
+    "fn sample_in",
     "fn sample_of",
     "struct Path",
     "struct Settings",
@@ -50,8 +53,8 @@ struct Kernel {
     text: String,
 }
 
-/// All kernels of a structure, with everything that they may have in them or not, each text once.
-fn kernels(structure: &Structure) -> BTreeSet<Kernel> {
+/// All kernels of a structure's paths that begin at one end, with everything that they may have in them or not, each text once.
+fn kernels(structure: &Structure, origin: PathOrigin) -> BTreeSet<Kernel> {
     let traits = (0..8).map(|bits| Traits {
         sided: bits & 1 != 0,
         visits: bits & 2 != 0,
@@ -65,7 +68,7 @@ fn kernels(structure: &Structure) -> BTreeSet<Kernel> {
     let native = traits.map(|traits| (traits, Arithmetic::default()));
     let mut all = BTreeSet::new();
     for (traits, arithmetic) in native.chain([(everything, DOUBLE)]) {
-        let kernels = Kernels::new(structure, traits, arithmetic);
+        let kernels = Kernels::new(structure, origin, traits, arithmetic);
         let mut add = |entry, text| all.insert(Kernel { entry, text });
         add("emit_paths", kernels.emit());
         add("trace", kernels.trace());
@@ -178,9 +181,17 @@ fn longest(text: &str) -> (usize, String) {
 
 /// Checks all kernels of a structure.
 fn check(name: &str, structure: &Structure) {
+    check_from(name, structure, PathOrigin::Camera);
+    if structure.tracer.has_light_paths() {
+        let name = format!("{name}, from lights");
+        check_from(&name, structure, PathOrigin::Lights);
+    }
+}
+
+fn check_from(name: &str, structure: &Structure, origin: PathOrigin) {
     let mut most = (0, String::new());
     let mut unused: Option<BTreeSet<String>> = None;
-    for kernel in kernels(structure) {
+    for kernel in kernels(structure, origin) {
         let dead = dead(&kernel);
         let is_shared = |what: &&String| SHARED.contains(&what.as_str());
         let recorded: Vec<_> = dead.iter().filter(|what| !is_shared(what)).collect();
@@ -207,9 +218,22 @@ fn kernels_of_tiny_scenes() {
 }
 
 #[test]
+fn kernels_of_paths_from_both_ends() {
+    for tiny in tiny::all() {
+        let subject = Subject::from_both_ends(&tiny.scene, &tiny.options);
+        check(tiny.name, &subject.plan.structure);
+    }
+}
+
+#[test]
 fn kernels_of_every_tracer_and_layer() {
     let views = DebugView::ALL.into_iter().map(TracerNode::Debug);
-    let tracers = [TracerNode::default(), TracerNode::AmbientOcclusion];
+    let tracers = [
+        TracerNode::default(),
+        TracerNode::Bidirectional(AnySharing::Combined),
+        TracerNode::Bidirectional(AnySharing::LightPathsOnly),
+        TracerNode::AmbientOcclusion,
+    ];
     for tracer in tracers.into_iter().chain(views) {
         for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
             let options = PlanOptions {
@@ -243,7 +267,7 @@ fn kernels_of_interiors() {
 #[test]
 fn dead_code_is_found() {
     let plan = tiny::plain().plan();
-    let kernel = kernels(&plan.structure)
+    let kernel = kernels(&plan.structure, PathOrigin::Camera)
         .into_iter()
         .find(|kernel| kernel.entry == "shade")
         .expect("a kernel");

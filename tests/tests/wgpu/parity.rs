@@ -51,6 +51,48 @@ fn tiny_scenes_in_both_mappings() {
     }
 }
 
+/// Splats come back in any order, some at a time.
+#[test]
+fn paths_from_both_ends() {
+    let Some(machine) = exact_machine() else {
+        return;
+    };
+    let look = Look::new(tiny::SIZE, 3);
+    // All steps are recorded and run elsewhere (`reads.rs`): these are of most kinds of lights, cameras and media.
+    let names = [
+        "matte",
+        "spot_light",
+        "spherical_point",
+        "environment",
+        "depth_of_field",
+        "dielectric_coat",
+        "drink",
+        "prism",
+    ];
+    let all = tiny::all();
+    for name in names {
+        let tiny = all.iter().find(|tiny| tiny.name == name);
+        let tiny = tiny.unwrap_or_else(|| panic!("no tiny scene is called {name}"));
+        let subject = Subject::from_both_ends(&tiny.scene, &tiny.options);
+        for mapping in MAPPINGS {
+            subject.agrees(machine, mapping, &look);
+        }
+    }
+    // More paths than have their splats in memory at a time, and more vertices than between two looks.
+    let options = PlanOptions {
+        size: [150, 110],
+        ..PlanOptions::default()
+    };
+    let look = Look {
+        max_depth: 20,
+        ..Look::new(options.size, 2)
+    };
+    for mapping in MAPPINGS {
+        let subject = Subject::from_both_ends(&fixtures::room(), &options);
+        subject.agrees(machine, mapping, &look);
+    }
+}
+
 #[test]
 fn paths_of_any_length() {
     let Some(machine) = exact_machine() else {

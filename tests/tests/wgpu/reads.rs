@@ -6,7 +6,7 @@ use residual_render::domain::{Buffer, Buffers};
 use residual_render::film::{Film, SampleSet};
 use residual_render::layer::Layer;
 use residual_render::passes::RenderOptions;
-use residual_render::tracer::{DebugView, TracerNode};
+use residual_render::tracer::{DebugView, PathOrigin, TracerNode};
 use residual_scenegen::plan::PlanOptions;
 use residual_tests::{Look, fixtures, tiny};
 use residual_wgsl::SceneFunctions;
@@ -24,8 +24,12 @@ fn render(Subject { plan, bvh }: &Subject, buffers: Buffers<'_>, look: &Look) ->
         reach: look.reach,
         ..RenderOptions::default()
     };
+    let functions = |origin| SceneFunctions::of(&plan.structure, origin);
+    let has_light_paths = plan.structure.tracer.has_light_paths();
+    let of_lights = has_light_paths.then(|| functions(PathOrigin::Lights));
     let recording = Recording {
-        functions: &SceneFunctions::of(&plan.structure),
+        functions: &functions(PathOrigin::Camera),
+        of_lights: of_lights.as_ref(),
         layers: plan.structure.layers,
         buffers,
         traversal: bvh,
@@ -80,6 +84,14 @@ fn tracers_and_layers_read_within_bounds() {
             };
             check(&Subject::of(&scene, &options), &look);
         }
+    }
+}
+
+#[test]
+fn paths_from_both_ends_read_within_bounds() {
+    for tiny in tiny::all() {
+        let subject = Subject::from_both_ends(&tiny.scene, &tiny.options);
+        check(&subject, &Look::new(tiny::SIZE, 1));
     }
 }
 

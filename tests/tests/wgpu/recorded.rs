@@ -11,9 +11,9 @@ use residual_bvh::{Hit, Ray};
 use residual_device_cpu::{AnyBvh, Traversal};
 use residual_render::domain::tape::{Function, Id, Node, ParameterKind, Statement};
 use residual_render::domain::{Buffer, Buffers, Scalar, Uint};
-use residual_render::film::{Film, TILE_SIZE};
+use residual_render::film::{Film, Splats, TILE_SIZE};
 use residual_render::layer::Layers;
-use residual_render::tracer::TracerOptions;
+use residual_render::tracer::{MAX_DEPTH, TracerOptions};
 use residual_wgsl::{Recorded, SceneFunctions};
 
 /// How often each buffer was read, and where beyond its end.
@@ -151,6 +151,7 @@ struct Path {
     dir: [u32; 3],
     throughput: [u32; 3],
     pdf: u32,
+    rivals: u32,
     pixel: u32,
     index: u32,
     state: u32,
@@ -169,6 +170,8 @@ fn ray(org: [u32; 3], dir: [u32; 3], tmax: f32) -> Ray {
 /// A scene whose functions are recorded.
 pub(crate) struct Recording<'a> {
     pub(crate) functions: &'a SceneFunctions,
+    /// Of paths from lights, where a sample also has one of them.
+    pub(crate) of_lights: Option<&'a SceneFunctions>,
     pub(crate) layers: Layers,
     pub(crate) buffers: Buffers<'a>,
     pub(crate) traversal: &'a AnyBvh,
@@ -209,9 +212,9 @@ impl Recording<'_> {
         }
     }
 
-    fn emit(&self, [x, y]: [u32; 2], sample: u32) -> Path {
+    fn emit(&self, functions: &SceneFunctions, [x, y]: [u32; 2], sample: u32) -> Path {
         let [width, height] = self.options.image.map(|pixels| (pixels as f32).to_bits());
-        let start = self.call(&self.functions.emit, |name| match name {
+        let start = self.call(&functions.emit, |name| match name {
             "x" => [x; 3],
             "y" => [y; 3],
             "sample" => [sample; 3],
@@ -223,11 +226,15 @@ impl Recording<'_> {
         Path {
             org: start.vector("org"),
             dir: start.vector("dir"),
-            throughput: [1.0_f32.to_bits(); 3],
-            pdf: 0,
+            throughput: match start.words("throughput") {
+                Some(_) => start.vector("throughput"),
+                None => [1.0_f32.to_bits(); 3],
+            },
+            pdf: start.words("pdf").map_or(0, |pdf| pdf[0]),
+            rivals: start.words("rivals").map_or(0, |rivals| rivals[0]),
             pixel: start.word("pixel"),
-            index: sample,
-            state: 1,
+            index: start.words("index").map_or(sample, |index| index[0]),
+            state: start.words("state").map_or(1, |state| state[0]),
         }
     }
 
@@ -260,12 +267,14 @@ impl Recording<'_> {
             "dir" => path.dir,
             "throughput" => path.throughput,
             "pdf" => [path.pdf; 3],
+            "rivals" => [path.rivals; 3],
             "pixel" => [path.pixel; 3],
             "index" => [path.index; 3],
             "state" => [path.state; 3],
             "max_depth" => [self.options.max_depth; 3],
             "roulette_from" => [self.options.roulette_from; 3],
             "reach" => [self.options.reach.to_bits(); 3],
+            "width" => [(self.options.image[0] as f32).to_bits(); 3],
             "height" => [(self.options.image[1] as f32).to_bits(); 3],
             other => unreachable!("{other}"),
         })
@@ -274,12 +283,52 @@ impl Recording<'_> {
     /// A sample of a pixel: radiance and layers.
     fn sample(&self, pixel: [u32; 2], sample: u32) -> Vec<f32> {
         let mut numbers = vec![0.0_f32; self.layers.stride()];
-        let mut path = self.emit(pixel, sample);
         let add = |numbers: &mut [f32], color: &[u32]| {
             for (number, &bits) in numbers.iter_mut().zip(color) {
                 *number += f32::from_bits(bits);
             }
         };
+        self.follow(self.functions, pixel, sample, |path, step, is_lit| {
+            if let Some(seen) = step.words("seen") {
+                add(&mut numbers, seen);
+            }
+            if path.state & MAX_DEPTH == 1 {
+                for layer in self.layers.of_samples() {
+                    let value = step.words(layer.name()).expect("a layer");
+                    let numbers = numbers[self.layers.offset(layer)..].iter_mut();
+                    for (number, &bits) in numbers.zip(value) {
+                        *number = f32::from_bits(bits);
+                    }
+                }
+            }
+            if is_lit {
+                add(&mut numbers, &step.vector("shadow_contribution"));
+            }
+        });
+        numbers
+    }
+
+    /// The splats of the light path with the number of a pixel: in its first sample.
+    fn splats(&self, functions: &SceneFunctions, pixel: [u32; 2], sample: u32) -> Vec<f32> {
+        let mut list = Vec::new();
+        self.follow(functions, pixel, sample, |_, step, is_lit| {
+            if is_lit {
+                list.extend(step.vector("shadow_contribution").map(f32::from_bits));
+                list.push(f32::from_bits(step.word("shadow_pixel")));
+            }
+        });
+        list
+    }
+
+    /// Follows a path. `at` each vertex it is said what became of it, and whether its shadow ray arrived.
+    fn follow(
+        &self,
+        functions: &SceneFunctions,
+        pixel: [u32; 2],
+        sample: u32,
+        mut at: impl FnMut(&Path, &Returned<'_>, bool),
+    ) {
+        let mut path = self.emit(functions, pixel, sample);
         let alpha = |ray: &Ray, hit: &Hit| self.is_there(ray, hit);
         let has_alpha = self
             .functions
@@ -294,28 +343,14 @@ impl Recording<'_> {
             self.traversal.closest_hits(&rays, &mut hit, alpha);
             let [hit] = hit;
             let step = match hit.is_hit() {
-                true => self.functions.programs[self.program_of(hit.prim)]
-                    .step
-                    .as_ref(),
-                false => self.functions.miss.as_ref(),
+                true => functions.programs[self.program_of(hit.prim)].step.as_ref(),
+                false => functions.miss.as_ref(),
             };
             let Some(step) = step else {
                 break;
             };
             let step = self.step(step, &path, &hit);
-            if let Some(seen) = step.words("seen") {
-                add(&mut numbers, seen);
-            }
-            if path.state == 1 {
-                for layer in self.layers.of_samples() {
-                    let value = step.words(layer.name()).expect("a layer");
-                    for (number, &bits) in
-                        numbers[self.layers.offset(layer)..].iter_mut().zip(value)
-                    {
-                        *number = f32::from_bits(bits);
-                    }
-                }
-            }
+            let mut is_lit = false;
             if step.has("shadow_active") {
                 let tmax = f32::from_bits(step.word("shadow_tmax"));
                 let rays = [ray(
@@ -325,10 +360,9 @@ impl Recording<'_> {
                 )];
                 let mut occluded = [false];
                 self.traversal.any_hits(&rays, &mut occluded, alpha);
-                if !occluded[0] {
-                    add(&mut numbers, &step.vector("shadow_contribution"));
-                }
+                is_lit = !occluded[0];
             }
+            at(&path, &step, is_lit);
             if !step.has("bounce_active") {
                 break;
             }
@@ -337,11 +371,11 @@ impl Recording<'_> {
                 dir: step.vector("bounce_dir"),
                 throughput: step.vector("bounce_throughput"),
                 pdf: step.word("bounce_pdf"),
+                rivals: step.words("bounce_rivals").map_or(0, |rivals| rivals[0]),
                 state: step.word("bounce_state"),
                 ..path
             };
         }
-        numbers
     }
 
     /// An image no larger than a tile.
@@ -351,9 +385,18 @@ impl Recording<'_> {
         let mut film = Film::new(width, height, TILE_SIZE, self.layers);
         for sample in 0..samples {
             let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-            let numbers: Vec<f32> = pixels
+            let mut numbers: Vec<f32> = pixels
+                .clone()
                 .flat_map(|pixel| self.sample(pixel, sample))
                 .collect();
+            if let Some(functions) = self.of_lights {
+                let mut splats = Splats::new(self.options.image, 1);
+                for pixel in pixels {
+                    splats.add(&self.splats(functions, pixel, sample));
+                }
+                let rect = film.tiles()[0].rect();
+                splats.add_to(rect, 0, self.layers.stride(), &mut numbers);
+            }
             film.tiles_mut()[0].add(&numbers);
         }
         film

@@ -7,8 +7,9 @@ use residual_device_cpu::{AnyBvh, LaneCount, Width};
 use residual_device_wgpu::{Dialect, Mapping, WgpuRenderer};
 use residual_render::film::{Film, SampleSet, TILE_SIZE};
 use residual_render::passes::{MAX_PASS, Pass, RenderOptions};
+use residual_render::tracer::{AnySharing, TracerNode};
 use residual_scenegen::desc::SceneDesc;
-use residual_scenegen::plan::{Plan, PlanOptions, plan};
+use residual_scenegen::plan::{CullingRule, Plan, PlanOptions, plan};
 use residual_tests::pictures::first_difference;
 use residual_tests::{Look, Prepared, read_scene, scene_files, scenes};
 
@@ -29,6 +30,17 @@ impl Subject {
     /// A scene, planned for an image of this size.
     pub(crate) fn of(scene: &SceneDesc, options: &PlanOptions) -> Self {
         Self::new(plan(scene, options).unwrap_or_else(|error| panic!("{}: {error}", scene.name)))
+    }
+
+    /// A scene with paths from both ends.
+    pub(crate) fn from_both_ends(scene: &SceneDesc, options: &PlanOptions) -> Self {
+        let options = PlanOptions {
+            tracer: TracerNode::Bidirectional(AnySharing::Combined),
+            // Light paths need surfaces that block light from both sides.
+            culling: CullingRule::None,
+            ..options.clone()
+        };
+        Self::of(scene, &options)
     }
 
     pub(crate) fn on_cpu(&self, look: &Look) -> Film {

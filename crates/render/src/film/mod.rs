@@ -12,12 +12,14 @@ mod pass;
 mod rect;
 mod replicates;
 mod sampling;
+mod splats;
 mod tile;
 
 pub use pass::{Pass, TileSamples};
 pub use rect::TileRect;
 pub use replicates::SampleSet;
 pub use sampling::Sampling;
+pub use splats::Splats;
 pub use tile::FilmTile;
 
 use residual_accuracy::Sampled;

@@ -2,8 +2,8 @@
 
 use super::forward::forward;
 use super::{
-    Bounce, CostMap, Crossing, Matter, MediumRecord, Nesting, Passage, Path, Scattering, Shadow,
-    Tracer, Vertex,
+    Bounce, CostMap, Crossing, Matter, MediumRecord, Nesting, Passage, Path, PathOrigin,
+    Scattering, Shadow, Tracer, Vertex,
 };
 use crate::bsdf::{Bsdf, HenyeyGreenstein};
 use crate::camera::Camera;
@@ -79,7 +79,6 @@ fn only_at_the_surface<D: Domain, B>(vertex: &Vertex<'_, D, B>) -> Option<D::M> 
 
 impl<D: Domain, T: Tracer<D>, N: Nesting<D>, M: Matter<D>> Tracer<D> for InMedia<T, N, M> {
     forward!(
-        on_emit,
         path_origin,
         wavelength,
         cone,
@@ -89,6 +88,27 @@ impl<D: Domain, T: Tracer<D>, N: Nesting<D>, M: Matter<D>> Tracer<D> for InMedia
         cost_map
     );
 
+    /// Paths from the camera begin in the media that it is in; those from lights, outside.
+    #[inline(always)]
+    fn on_emit<C: Camera<D>, L: LightKinds<D> + ?Sized>(
+        &self,
+        d: D,
+        camera: &C,
+        lights: &L,
+        pixel: [D::U; 2],
+        sample: D::U,
+    ) -> Path<D> {
+        let path = self.tracer.on_emit(d, camera, lights, pixel, sample);
+        if self.path_origin() == Some(PathOrigin::Lights) {
+            return path;
+        }
+        let around = MediumRecord::load(d, d.uint(0)).around_camera;
+        Path {
+            state: path.state.in_media(d, around),
+            ..path
+        }
+    }
+
     #[inline(always)]
     fn crossing(
         &self,
@@ -97,7 +117,8 @@ impl<D: Domain, T: Tracer<D>, N: Nesting<D>, M: Matter<D>> Tracer<D> for InMedia
         surface: &Surface<D>,
         interior: D::U,
     ) -> Option<Crossing<D>> {
-        Some(self.nesting.crossing(d, path, surface, interior))
+        let media = path.state.media(d);
+        Some(self.nesting.crossing(d, media, surface.front, interior))
     }
 
     #[inline(always)]

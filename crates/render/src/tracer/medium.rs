@@ -23,6 +23,8 @@ record! {
         row {
             /// Index of the first medium of a higher priority.
             above: word,
+            /// Of the outside: the media that the camera is in, as paths remember them.
+            around_camera: word,
         }
     }
 }

@@ -1,16 +1,15 @@
 //! How bodies lie to each other: which medium a path is in, and what it meets where it crosses the surface of a body.
 
-use super::{Crossing, MediumRecord, Path, PathState};
+use super::{Crossing, MediumRecord, PathState};
 use crate::domain::Domain;
-use crate::surface::Surface;
 
 /// How bodies lie to each other.
 pub trait Nesting<D: Domain> {
     /// Index of the medium that a path with this state is in.
     fn medium(&self, d: D, state: PathState<D::U>) -> D::U;
 
-    /// What a path meets at the surface of a body that is filled with medium `interior`.
-    fn crossing(&self, d: D, path: &Path<D>, surface: &Surface<D>, interior: D::U) -> Crossing<D>;
+    /// What a path in these media meets at the surface of a body that is filled with medium `interior`, on its front or its back.
+    fn crossing(&self, d: D, media: D::U, front: D::M, interior: D::U) -> Crossing<D>;
 }
 
 /// Bodies lie beside each other: whoever leaves one is outside.
@@ -24,9 +23,9 @@ impl<D: Domain> Nesting<D> for Beside {
     }
 
     #[inline(always)]
-    fn crossing(&self, d: D, _: &Path<D>, surface: &Surface<D>, interior: D::U) -> Crossing<D> {
+    fn crossing(&self, d: D, _: D::U, front: D::M, interior: D::U) -> Crossing<D> {
         Crossing {
-            beyond: d.select_u(surface.front, interior, d.uint(0)),
+            beyond: d.select_u(front, interior, d.uint(0)),
             around: None,
             hidden: None,
         }
@@ -84,8 +83,7 @@ impl<D: Domain> Nesting<D> for Nested {
     }
 
     #[inline(always)]
-    fn crossing(&self, d: D, path: &Path<D>, surface: &Surface<D>, interior: D::U) -> Crossing<D> {
-        let media = path.state.media(d);
+    fn crossing(&self, d: D, media: D::U, front: D::M, interior: D::U) -> Crossing<D> {
         let above = MediumRecord::load(d, interior).above;
         // Whoever enters is put behind the bodies that go before; those stand first. Whoever leaves is taken out where it is
         // found first. A body that a path leaves and was never in, as one around the camera, is left as if it had been.
@@ -106,12 +104,12 @@ impl<D: Domain> Nesting<D> for Nested {
             left = d.select_u(found, Self::without(d, media, at), left);
             left_is_hidden = d.select_mask(found, d.truth(at > 0), left_is_hidden);
         }
-        let beyond = d.select_u(surface.front, entered, left);
-        let outer = Self::body(d, d.select_u(surface.front, media, left), 0);
+        let beyond = d.select_u(front, entered, left);
+        let outer = Self::body(d, d.select_u(front, media, left), 0);
         Crossing {
             beyond,
             around: Some(MediumRecord::load(d, outer).ior),
-            hidden: Some(d.select_mask(surface.front, is_within, left_is_hidden)),
+            hidden: Some(d.select_mask(front, is_within, left_is_hidden)),
         }
     }
 }
@@ -136,10 +134,10 @@ impl<D: Domain> Nesting<D> for AnyNesting {
     }
 
     #[inline(always)]
-    fn crossing(&self, d: D, path: &Path<D>, surface: &Surface<D>, interior: D::U) -> Crossing<D> {
+    fn crossing(&self, d: D, media: D::U, front: D::M, interior: D::U) -> Crossing<D> {
         match self {
-            Self::Beside => Beside.crossing(d, path, surface, interior),
-            Self::Nested => Nested.crossing(d, path, surface, interior),
+            Self::Beside => Beside.crossing(d, media, front, interior),
+            Self::Nested => Nested.crossing(d, media, front, interior),
         }
     }
 }

@@ -12,7 +12,7 @@ pub const MAX_DEPTH: u32 = (1 << DEPTH_BITS) - 1;
 pub const MAX_MEDIA: u32 = (1 << (SPECTRAL_BIT - DEPTH_BITS)) - 1;
 
 /// What a path remembers of its way: how many vertices it has, the media that it is in, and whether it is of one wavelength.
-/// Devices keep the word and do not look into it. The first vertex that a path is looking for has the word 1.
+/// Devices keep the word, and see in it only whether a path is looking for its first vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct PathState<U>(pub U);
 
@@ -34,7 +34,7 @@ impl<U: crate::domain::Unsigned> PathState<U> {
     /// Whether the path's ray comes from the camera.
     #[inline(always)]
     pub fn is_first<D: Domain<U = U>>(self, d: D) -> D::M {
-        d.eq_u(self.0, d.uint(1))
+        d.eq_u(self.depth(d), d.uint(1))
     }
 
     /// The next vertex. A path that has [`MAX_DEPTH`] goes on no more.

@@ -93,6 +93,7 @@ pub(super) fn plan_materials(
             params: materials.params.len() as u32,
             culled,
             alpha_tested,
+            interior,
         });
         materials.params.extend(collected.params);
         materials.dismissed.extend(collected.dismissed);

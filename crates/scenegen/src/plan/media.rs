@@ -173,6 +173,7 @@ impl Medium {
                 .scattering
                 .map_or(0.0, |scattering| scattering.anisotropy),
             above,
+            around_camera: 0,
         }
     }
 }

@@ -27,6 +27,7 @@ mod light_tree_tests;
 mod lights;
 mod materials;
 mod media;
+mod media_at_camera;
 mod metallic_roughness;
 mod motion;
 mod opacity;
@@ -116,6 +117,8 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
             reason: format!("{hidden} triangles lie exactly on others, which hide them"),
         });
     }
+    *data.buffer_mut(Buffer::Media) =
+        media_at_camera::media_words(&materials, &data.record(0), &data, &geometry.objects);
     let chosen = &shot.camera;
     match chosen
         .clip
@@ -150,7 +153,6 @@ pub fn plan(scene: &SceneDesc, options: &PlanOptions) -> Result<Plan, PlanError>
         },
         TracerNode::AmbientOcclusion | TracerNode::Debug(_) => Between::default(),
     };
-    *data.buffer_mut(Buffer::Media) = materials.media_words;
     warnings.extend(materials.warnings);
 
     let mut plan = Plan {

@@ -19,7 +19,7 @@ use super::lights::PlannedLights;
 use super::options::PlanOptions;
 use super::planned::Motion;
 use super::planned_materials::Materials;
-use super::{coincident, geometry};
+use super::{coincident, geometry, media_at_camera};
 use crate::desc::{Pose, SceneDesc, Warning};
 
 /// The first pose, planned, by which the others go.
@@ -33,12 +33,7 @@ pub(super) struct First<'a> {
 }
 
 /// What is the same whatever moves: what is made of materials, images and names alone.
-const SAME: [Buffer; 4] = [
-    Buffer::Texels,
-    Buffer::Params,
-    Buffer::Media,
-    Buffer::Objects,
-];
+const SAME: [Buffer; 3] = [Buffer::Texels, Buffer::Params, Buffer::Objects];
 
 impl First<'_> {
     /// Plans the other poses; `None` where nothing that is seen moves.
@@ -104,6 +99,13 @@ impl First<'_> {
         }
         let filters = self.materials.filter();
         camera::set_other_records(&camera, self.options, filters, bounds, &mut data);
+        let triangles = if only_camera { self.data } else { &data };
+        *data.buffer_mut(Buffer::Media) = media_at_camera::media_words(
+            self.materials,
+            &data.record(0),
+            triangles,
+            &self.geometry.objects,
+        );
         if let Some(clip) = shot.camera.clip {
             let triangles = if only_camera { self.data } else { &data };
             let record = data.record(0);
@@ -119,7 +121,7 @@ impl First<'_> {
             }
         }
         let is_new = |buffer: &Buffer| match only_camera {
-            true => *buffer == Buffer::Camera,
+            true => matches!(buffer, Buffer::Camera | Buffer::Media),
             false => !SAME.contains(buffer),
         };
         let same: Vec<Buffer> = Buffer::ALL.into_iter().filter(|b| !is_new(b)).collect();

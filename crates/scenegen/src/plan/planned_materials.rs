@@ -17,6 +17,8 @@ pub(super) struct PlannedMaterial {
     pub(super) culled: bool,
     /// It has an alpha test.
     pub(super) alpha_tested: bool,
+    /// Index of the medium behind its surfaces, where they are those of bodies.
+    pub(super) interior: Option<u32>,
 }
 
 /// All materials, planned. Those that no instance uses, or whose surfaces are never there, are not.

@@ -20,7 +20,7 @@ fn follow_path(@builtin(global_invocation_id) id: vec3u) {
         if is_shadow {
             shadows += 1u;
             if hit.prim == NONE {
-                add(slot, shadow.contribution);
+                add(shadow.sample, shadow.contribution);
             }
             is_shadow = false;
             if !goes_on {

@@ -17,7 +17,7 @@ fn trace(
             org = shadow_rays[id.x].org;
             dir = shadow_rays[id.x].dir;
             tmax = shadow_rays[id.x].tmax;
-            slot = shadow_rays[id.x].slot;
+            slot = shadow_rays[id.x].sample;
         } else {
             slot = queues.entries[queues.side * settings.slots + id.x - shadows];
             org = paths[slot].org;

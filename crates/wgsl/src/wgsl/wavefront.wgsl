@@ -33,13 +33,19 @@ struct Path {
     state: u32,
     // Program, u, v, triangle.
     hit: vec4u,
+    //[ends
+    // What strategies from the other end are worth, and the number of the path's points.
+    rivals: f32,
+    index: u32,
+    //]
 }
 
 struct ShadowRay {
     org: vec3f,
     tmax: f32,
     dir: vec3f,
-    slot: u32,
+    // What it counts for: a path's slot, or a sample of any pixel.
+    sample: u32,
     contribution: vec3f,
 }
 
@@ -52,6 +58,8 @@ struct Queues {
     // What has been traced.
     bounce_rays: atomic<u32>,
     shadow_rays: atomic<u32>,
+    // What light paths have found.
+    splats: atomic<u32>,
     // Of each program; misses come last.
     counts: array<atomic<u32>, QUEUES>,
     cursors: array<atomic<u32>, QUEUES>,

@@ -30,6 +30,11 @@ impl<'t> Outputs<'t> {
         Self::default()
     }
 
+    /// There are none.
+    pub fn is_empty(&self) -> bool {
+        self.outputs.is_empty()
+    }
+
     fn push<K>(
         mut self,
         name: &'static str,
