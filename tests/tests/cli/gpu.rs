@@ -31,7 +31,8 @@ fn gpus_render_the_processors_image() {
     };
     let folder = workplace();
     let cpu = ["--device", "cpu", "--tier", "interpreted"];
-    for job in [&["--tracer", "path"][..], &["--tracer", "ao"]] {
+    for tracer in ["path", "bidirectional", "ao"] {
+        let job = &["--tracer", tracer];
         let args = [&cpu[..], job, &["-o", "cpu.exr", "--stats", "json"]].concat();
         let of_cpu = statistics(&good(render(&folder, &args)));
         assert_eq!(of_cpu["device"], "cpu");

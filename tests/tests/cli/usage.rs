@@ -115,6 +115,8 @@ fn failed_jobs_end_in_status_1_and_say_why() {
         &render(&folder, &["triangle.obj", "--camera", "0"]),
         &["no cameras"],
     );
+    let lanes = ["triangle.obj", "--lanes", "4"];
+    fails(&render(&folder, &lanes), &["--lanes", "leave it out"]);
     fails(
         &render(&folder, &["triangle.obj", "--env", "missing.hdr"]),
         &["missing.hdr"],
