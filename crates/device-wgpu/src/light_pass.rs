@@ -10,7 +10,18 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::launch::Settings;
 use crate::stages::StageSeconds;
-use crate::state::{Header, Shown};
+use crate::state::{Header, SPLAT, Shown};
+
+/// Paths have this many splats on average, or fewer, between two looks at what there is; where they have more, the first launch is in vain.
+const LIKELY: u32 = 2;
+
+/// Some of a pass's paths.
+#[derive(Clone, Copy)]
+struct Part {
+    first_sample: u32,
+    first: u32,
+    count: u32,
+}
 
 /// What a pass of light paths needs.
 pub(crate) struct LightPass<'a> {
@@ -37,18 +48,28 @@ impl LightPass<'_> {
     ) -> Result<Splats, Error> {
         let mut splats = Splats::new(size, pass.count);
         let mut film_seconds = 0.0;
-        let mut add = |list: &[f32]| {
-            let start = Instant::now();
-            splats.add(list);
-            film_seconds += start.elapsed().as_secs_f64();
-        };
         let paths = u64::from(size[0]) * u64::from(size[1]) * u64::from(pass.count);
+        let most = self.kernels.most_splats(&self.settings);
+        let mut per_path = LIKELY.min(most);
         let mut first = 0;
         while first < paths {
-            let wanted = (paths - first).min(u64::from(self.slots)) as u32;
-            let count = wanted.min(self.most_paths());
-            self.launch(pass.first, first as u32, count, &mut add, counters, seconds)?;
-            first += u64::from(count);
+            let fitting = (self.state.splats_that_fit() / u64::from(per_path)) as u32;
+            let left = (paths - first).min(u64::from(self.slots)) as u32;
+            let part = Part {
+                first_sample: pass.first,
+                first: first as u32,
+                count: left.min(fitting.max(1)),
+            };
+            match self.launch(part, per_path, counters, seconds)? {
+                Some(list) => {
+                    let start = Instant::now();
+                    splats.add(&list);
+                    film_seconds += start.elapsed().as_secs_f64();
+                    first += u64::from(part.count);
+                }
+                // Once more, fewer at a time. That of all of them there is room for.
+                None => per_path = (2 * per_path).min(most),
+            }
         }
         counters.camera_rays += paths;
         counters.film += film_seconds;
@@ -60,43 +81,50 @@ impl LightPass<'_> {
     /// # Errors
     /// If the device fails.
     pub(crate) fn warm_up(&self, seconds: &mut StageSeconds) -> Result<(), Error> {
-        let mut counters = Counters::default();
-        self.launch(0, 0, 1, &mut |_| (), &mut counters, seconds)
-    }
-
-    /// So many that their splats fit where samples are kept otherwise.
-    fn most_paths(&self) -> u32 {
+        let part = Part {
+            first_sample: 0,
+            first: 0,
+            count: 1,
+        };
         let most = self.kernels.most_splats(&self.settings);
-        (self.state.splats_that_fit() / u64::from(most)).max(1) as u32
+        let mut counters = Counters::default();
+        self.launch(part, most, &mut counters, seconds)?;
+        Ok(())
     }
 
-    /// Launches paths, waits for them, and hands out their splats, some at a time.
+    /// Launches paths, waits for them, and returns their splats; `None` if these are more than so many a path, and not all there.
     fn launch(
         &self,
-        first_sample: u32,
-        first: u32,
-        count: u32,
-        splats: &mut impl FnMut(&[f32]),
+        part: Part,
+        per_path: u32,
         counters: &mut Counters,
         seconds: &mut StageSeconds,
-    ) -> Result<(), Error> {
+    ) -> Result<Option<Vec<f32>>, Error> {
         let Self {
             gpu,
             kernels,
             state,
             ..
         } = *self;
-        let settings = self.settings.of(first_sample, first, count);
-        let most = u64::from(count) * u64::from(kernels.most_splats(&settings));
-        let returns = (0, state.bytes_of_splats(most));
+        let settings = self.settings.of(part.first_sample, part.first, part.count);
+        let room = u64::from(part.count) * u64::from(per_path);
+        let room = room.min(state.splats_that_fit()) as usize;
+        let mut list = Vec::new();
+        let mut is_whole = true;
         let mut found = |header: &Header, values: &[f32]| {
-            counters.splats += u64::from(header.splats);
-            splats(&values[..4 * header.splats as usize]);
+            let count = header.splats as usize;
+            is_whole &= count <= room;
+            list.extend_from_slice(&values[..SPLAT * count.min(room)]);
         };
+        let returns = (0, 4 * (SPLAT * room) as u64);
         let launched = kernels.launch(gpu, state, &settings, returns, seconds, &mut found)?;
         let did = state.collect(gpu, &launched, seconds, &mut found)?;
+        if !is_whole {
+            return Ok(None);
+        }
+        counters.splats += (list.len() / SPLAT) as u64;
         counters.bounce_rays += u64::from(did.bounce_rays);
         counters.shadow_rays += u64::from(did.shadow_rays);
-        Ok(())
+        Ok(Some(list))
     }
 }

@@ -24,7 +24,9 @@ const HEADER: usize = 7;
 const OF_QUEUE: usize = 3;
 
 /// Numbers of a splat.
-const SPLAT: u64 = 4;
+pub(crate) const SPLAT: usize = 4;
+/// There is room for the splats of a path, however long it is.
+const LONGEST_PATH: u64 = 1024;
 
 /// What sizes of buffers depend on.
 #[derive(Clone, Copy)]
@@ -42,6 +44,15 @@ impl Shape {
         match self.has_light_paths {
             true => PATH_OF_EITHER_END,
             false => PATH,
+        }
+    }
+
+    /// Bytes of the samples of so many paths, or of splats.
+    fn samples(self, slots: u64) -> u64 {
+        let bytes = slots * 4 * self.stride as u64;
+        match self.has_light_paths {
+            true => bytes.max(4 * SPLAT as u64 * LONGEST_PATH),
+            false => bytes,
         }
     }
 
@@ -150,7 +161,8 @@ impl State {
         let shadow_rays = gpu.buffer("shadow rays", queued * SHADOW_RAY, storage);
         let header = 4 * (HEADER + OF_QUEUE * queue_count) as u64;
         let queues = gpu.buffer("queues", header + queued * ENTRIES, storage);
-        let samples = gpu.buffer("samples", slots * 4 * shape.stride as u64, storage);
+        let sample_bytes = shape.samples(slots);
+        let samples = gpu.buffer("samples", sample_bytes, storage);
         let size = size_of::<Settings>() as u64;
         let settings = gpu.buffer("settings", size, BufferUsages::UNIFORM);
         let arguments = gpu.buffer(
@@ -185,7 +197,7 @@ impl State {
             staging: [(); 2].map(|()| {
                 gpu.device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("staging"),
-                    size: SAMPLES_AT + slots * 4 * shape.stride as u64,
+                    size: SAMPLES_AT + sample_bytes,
                     usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
                     mapped_at_creation: false,
                 })
@@ -217,12 +229,7 @@ impl State {
 
     /// Splats that fit where samples are kept.
     pub(crate) fn splats_that_fit(&self) -> u64 {
-        self.samples.size() / (4 * SPLAT)
-    }
-
-    /// Bytes of at most so many splats.
-    pub(crate) fn bytes_of_splats(&self, most: u64) -> u64 {
-        4 * SPLAT * most.min(self.splats_that_fit())
+        self.samples.size() / (4 * SPLAT as u64)
     }
 
     /// Empties the list of splats, which have been collected.

@@ -8,9 +8,12 @@ fn add(slot: u32, color: vec3f) {
 }
 //]
 //[lights
-// A list of contributions and the samples that they are for, in any order.
+// A list of contributions and the samples that they are for, in any order. Where it is too short, the host sees that it is.
 fn add(sample: u32, color: vec3f) {
     let first = 4u * atomicAdd(&queues.splats, 1u);
+    if first >= arrayLength(&samples) {
+        return;
+    }
     samples[first] = color.x;
     samples[first + 1u] = color.y;
     samples[first + 2u] = color.z;
