@@ -9,6 +9,7 @@ use crate::calls::{FOLLOWED, QUEUED, QUEUED_IN_CASE, WayOn, call};
 use crate::functions::{Recorded, SceneFunctions};
 use crate::module::Module;
 use crate::sections::sections;
+use crate::shade_kernel::add_shade;
 
 /// Threads of a workgroup.
 pub const WORKGROUP: u32 = 64;
@@ -22,12 +23,10 @@ const CONTROL: &str = include_str!("wgsl/control.wgsl");
 const PLAN: &str = include_str!("wgsl/plan.wgsl");
 const BINDINGS: &str = include_str!("wgsl/kernels.wgsl");
 const PATHS: &str = include_str!("wgsl/paths.wgsl");
-const TRAVERSAL: &str = include_str!("wgsl/traversal.wgsl");
+pub(crate) const TRAVERSAL: &str = include_str!("wgsl/traversal.wgsl");
 const TRACE: &str = include_str!("wgsl/trace.wgsl");
 const SCATTER: &str = include_str!("wgsl/scatter.wgsl");
 const TALLIES: &str = include_str!("wgsl/tallies.wgsl");
-const COMPACTION: &str = include_str!("wgsl/compaction.wgsl");
-const RAYS: &str = include_str!("wgsl/rays.wgsl");
 const FOLLOW: &str = include_str!("wgsl/follow.wgsl");
 
 /// What a scene calls for, as texts for one adapter.
@@ -393,50 +392,4 @@ fn is_there(org: vec3f, dir: vec3f, hit: Hit) -> bool {{
             }
         }
     }
-}
-
-/// Adds the kernel that shades `count` of the sorted paths from `first` on.
-fn add_shade(mut module: Module, first: &str, count: &str, body: &str) -> String {
-    module.add_text(COMPACTION);
-    module.add_text(&format!(
-        "\
-@compute @workgroup_size(WORKGROUP)
-fn shade(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(local_invocation_index) thread: u32,
-) {{
-    clear_counts(thread);
-    var slot: u32;
-    var next = NONE;
-    var shadow = NONE;
-    var shadow_ray: ShadowRay;
-    if id.x < {count} {{
-        slot = queues.entries[2u * settings.slots + {first} + id.x];
-        let path = paths[slot];
-{body}    }}
-    reserve(thread);
-    if next != NONE {{
-        queues.entries[(1u - queues.side) * settings.slots + next_start + next] = slot;
-    }}
-    if shadow != NONE {{
-        shadow_rays[shadow_start + shadow] = shadow_ray;
-    }}
-}}
-"
-    ));
-    module.finish()
-}
-
-/// `trace_rays`: ray queries, apart from any scene.
-pub fn rays_kernel(arithmetic: Arithmetic, f64: bool) -> String {
-    let mut module = Module::new(arithmetic);
-    module.add_text(&format!(
-        "const WORKGROUP: u32 = {WORKGROUP}u;\nconst STACK: u32 = {STACK}u;\n"
-    ));
-    module.add_text(&sections(
-        TRAVERSAL,
-        &[if f64 { "f64" } else { "f32" }, "sided"],
-    ));
-    module.add_text(RAYS);
-    module.finish()
 }

@@ -16,14 +16,17 @@ mod kernels;
 mod module;
 mod names;
 mod print;
+mod rays_kernel;
 mod sections;
+mod shade_kernel;
 
 pub use arithmetic::{Arithmetic, Division, Fma, SquareRoot};
 pub use bindings::Binding;
 pub use functions::{ProgramFunctions, Recorded, SceneFunctions};
 pub use kernel_set::{KernelSet, KernelTexts, Mapping};
-pub use kernels::{Kernels, STACK, Traits, WORKGROUP, rays_kernel};
+pub use kernels::{Kernels, STACK, Traits, WORKGROUP};
 pub use module::Module;
+pub use rays_kernel::rays_kernel;
 
 use residual_render::domain::tape::Function;
 use residual_render::program::Structure;

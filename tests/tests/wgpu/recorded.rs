@@ -330,13 +330,9 @@ impl Recording<'_> {
     ) {
         let mut path = self.emit(functions, pixel, sample);
         let alpha = |ray: &Ray, hit: &Hit| self.is_there(ray, hit);
-        let has_alpha = self
-            .functions
-            .programs
-            .iter()
-            .any(|p| p.alpha_test.is_some());
-        let alpha: Option<&dyn Fn(&Ray, &Hit) -> bool> =
-            if has_alpha { Some(&alpha) } else { None };
+        let mut programs = functions.programs.iter();
+        let has_alpha = programs.any(|program| program.alpha_test.is_some());
+        let alpha = has_alpha.then_some(&alpha as &dyn Fn(&Ray, &Hit) -> bool);
         for _ in 0..self.options.max_depth {
             let mut hit = [Hit::miss(f32::MAX)];
             let rays = [ray(path.org, path.dir, f32::MAX)];
