@@ -196,6 +196,15 @@ pub fn plain() -> Tiny {
     Tiny::new("matte", &[], &[], scene(gray(), corner()))
 }
 
+/// The tiny scene of this name.
+///
+/// # Panics
+/// If none has it.
+pub fn named(name: &str) -> Tiny {
+    let tiny = all().into_iter().find(|tiny| tiny.name == name);
+    tiny.unwrap_or_else(|| panic!("no tiny scene is called {name}"))
+}
+
 /// All tiny scenes.
 pub fn all() -> Vec<Tiny> {
     [

@@ -311,8 +311,7 @@ fn renderers_contain_what_scenes_call_for() {
         ("solid_glass", &["bsdf::dielectric"]),
         ("tinted_glass", &["tracer::in_media"]),
     ] {
-        let tiny = tiny::all().into_iter().find(|tiny| tiny.name == name);
-        let library = check_instructions(&tiny.unwrap().plan(), name);
+        let library = check_instructions(&tiny::named(name).plan(), name);
         // Names tell, too: the Cornell box has none of these.
         for part in functions {
             assert!(NOT_IN_CORNELL.contains(part));
@@ -378,8 +377,7 @@ fn shared_cornell_box() {
 /// Layers, and tracers but that of paths, are asked for on the command line. Who does not ask has none of their code.
 #[test]
 fn layers_and_other_tracers_are_there_if_asked_for() {
-    let tiny = tiny::all().into_iter().find(|tiny| tiny.name == "matte");
-    let scene = tiny.unwrap().scene;
+    let scene = tiny::plain().scene;
     let compile = |tracer, layers| {
         let options = PlanOptions {
             tracer,

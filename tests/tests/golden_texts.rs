@@ -337,10 +337,7 @@ fn emitted_texts_are_formatted() {
 /// Names come from files, and comments end with the line.
 #[test]
 fn names_stay_in_comments() {
-    let tiny = tiny::all()
-        .into_iter()
-        .find(|tiny| tiny.name == "odd_names");
-    let mut tiny = tiny.unwrap();
+    let mut tiny = tiny::named("odd_names");
     let odd = tiny.scene.materials[0].name.clone();
     tiny.scene.name.clone_from(&odd);
     let text = emitted(&tiny);

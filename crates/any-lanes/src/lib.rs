@@ -39,26 +39,17 @@ impl AnyLanes {
             LaneCount::One => {
                 interpreter.render_tiles_in(Scalar::new(buffers), scene, job, samples)
             }
-            LaneCount::Four => {
-                if const { native::<S>() == 4 } {
-                    interpreter.render_tiles(scene, job, samples)
-                } else {
-                    interpreter.render_tiles_in(Lanes4::new(simd, buffers), scene, job, samples)
-                }
+            LaneCount::Four if const { native::<S>() != 4 } => {
+                interpreter.render_tiles_in(Lanes4::new(simd, buffers), scene, job, samples)
             }
-            LaneCount::Eight => {
-                if const { native::<S>() == 8 } {
-                    interpreter.render_tiles(scene, job, samples)
-                } else {
-                    interpreter.render_tiles_in(Lanes8::new(simd, buffers), scene, job, samples)
-                }
+            LaneCount::Eight if const { native::<S>() != 8 } => {
+                interpreter.render_tiles_in(Lanes8::new(simd, buffers), scene, job, samples)
             }
-            LaneCount::Sixteen => {
-                if const { native::<S>() == 16 } {
-                    interpreter.render_tiles(scene, job, samples)
-                } else {
-                    interpreter.render_tiles_in(Lanes16::new(simd, buffers), scene, job, samples)
-                }
+            LaneCount::Sixteen if const { native::<S>() != 16 } => {
+                interpreter.render_tiles_in(Lanes16::new(simd, buffers), scene, job, samples)
+            }
+            LaneCount::Four | LaneCount::Eight | LaneCount::Sixteen => {
+                interpreter.render_tiles(scene, job, samples)
             }
         }
     }

@@ -22,11 +22,6 @@ impl Interpreter {
         Self { structure }
     }
 
-    /// The structure.
-    pub fn structure(&self) -> &Structure {
-        &self.structure
-    }
-
     /// Renders tiles in a domain, whatever its lanes: who calls it has it compiled for that domain.
     #[inline(always)]
     pub fn render_tiles_in<'a, D: Lanes + 'a>(

@@ -10,7 +10,7 @@ use residual_bvh::{
 };
 use residual_render::scene_data::SceneData;
 
-use crate::lanes::native;
+use crate::lanes::{LaneCount, native};
 
 /// Says whether a surface is there where a ray meets it (alpha). A pure function of both.
 pub type AlphaFilter<'a> = dyn Fn(&Ray, &Hit) -> bool + 'a;
@@ -101,13 +101,17 @@ impl AnyBvh {
         let sided = data.single_sided.contains(&true);
         let sides = sided.then_some(data.single_sided.as_slice());
         let children = match width {
-            Width::Native => dispatch!(Level::new(), simd => width_of(simd)),
-            Width::Four => 4,
+            Width::Native => LaneCount::native(),
+            Width::Four => LaneCount::Four,
         };
         let tree = match children {
-            16.. => Tree::Sixteen(build_compact(positions, &triangles, sides, quality)),
-            8.. => Tree::Eight(build(positions, &triangles, sides, quality)),
-            _ => Tree::Four(build(positions, &triangles, sides, quality)),
+            LaneCount::Sixteen => {
+                Tree::Sixteen(build_compact(positions, &triangles, sides, quality))
+            }
+            LaneCount::Eight => Tree::Eight(build(positions, &triangles, sides, quality)),
+            LaneCount::One | LaneCount::Four => {
+                Tree::Four(build(positions, &triangles, sides, quality))
+            }
         };
         Self {
             tree,
@@ -156,10 +160,6 @@ impl HitFilter for AlphaTested<'_> {
     fn accept(&self, ray: &Ray, hit: &Hit) -> bool {
         !self.alpha_tested.has(hit.prim) || (self.alpha)(ray, hit)
     }
-}
-
-fn width_of<S: Simd>(_: S) -> usize {
-    native::<S>()
 }
 
 /// Evaluates an expression for the hierarchy, whatever its width, and the kernel of its streams, on instruction set `$S`.

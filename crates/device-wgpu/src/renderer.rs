@@ -235,19 +235,26 @@ impl<'g> WgpuRenderer<'g> {
         let pose = pose.unwrap_or(&self.first);
         let mut counters = Counters::default();
         let mut seconds = StageSeconds::default();
-        let mut add = |pass: Pass, splats: Option<&Splats>, did: (&mut Counters, &mut _)| {
-            let (counters, seconds) = did;
-            self.add_pass(pose, film, pass, options, splats, counters, seconds)
+        let kernels = self.light_kernels.as_ref();
+        let lights = kernels.map(|kernels| self.light_pass(kernels, pose, options));
+        let parts = match lights {
+            None => vec![pass],
+            Some(_) => Splats::parts(pass, options.image).collect(),
         };
-        match &self.light_kernels {
-            None => add(pass, None, (&mut counters, &mut seconds))?,
-            Some(kernels) => {
-                let lights = self.light_pass(kernels, pose, options);
-                for part in Splats::parts(pass, options.image) {
-                    let splats = lights.splats(part, options.image, &mut counters, &mut seconds)?;
-                    add(part, Some(&splats), (&mut counters, &mut seconds))?;
-                }
-            }
+        for part in parts {
+            let splats = lights
+                .as_ref()
+                .map(|lights| lights.splats(part, options.image, &mut counters, &mut seconds))
+                .transpose()?;
+            self.add_pass(
+                pose,
+                film,
+                part,
+                options,
+                splats.as_ref(),
+                &mut counters,
+                &mut seconds,
+            )?;
         }
         counters.emit = seconds[Stage::Emit as usize];
         counters.trace_camera = seconds[Stage::TraceCamera as usize];

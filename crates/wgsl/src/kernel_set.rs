@@ -63,22 +63,18 @@ impl KernelSet {
             visits: shows_traversal,
             f64,
         };
+        let from = |origin| Kernels::new(structure, origin, traits, arithmetic);
+        let of_camera = from(PathOrigin::Camera);
         let mut set = Self {
             mapping,
             layers: structure.layers,
             shows_traversal,
-            queues: structure.programs.len() + 1,
+            queues: of_camera.queues(),
             texts: BTreeMap::new(),
         };
-        set.add(&Kernels::new(
-            structure,
-            PathOrigin::Camera,
-            traits,
-            arithmetic,
-        ));
+        set.add(&of_camera);
         if structure.tracer.has_light_paths() {
-            let origin = PathOrigin::Lights;
-            set.add(&Kernels::new(structure, origin, traits, arithmetic));
+            set.add(&from(PathOrigin::Lights));
         }
         set
     }

@@ -35,12 +35,7 @@ use residual_render::tracer::PathOrigin;
 /// The functions of a scene in one text: `emit`, for each program `program_K_step` and `_alpha_test`, and `miss`. What the
 /// scene does not call for is not there. Paths begin at the camera.
 pub fn scene_module(structure: &Structure) -> String {
-    scene_module_of(structure, PathOrigin::Camera)
-}
-
-/// The same of the paths of a structure with light paths that begin at one end.
-pub fn scene_module_of(structure: &Structure, origin: PathOrigin) -> String {
-    let functions = SceneFunctions::of(structure, origin);
+    let functions = SceneFunctions::of(structure, PathOrigin::Camera);
     let mut module = Module::new(Arithmetic::default());
     module.add(&functions.emit);
     for program in &functions.programs {

@@ -27,10 +27,7 @@ fn picture(plan: &Plan, structure: &Structure) -> Vec<[f32; 3]> {
 
 /// Data for an environment that is black and never picked, so that renderers can ask for it.
 fn add_black_environment(data: &mut SceneData) {
-    let bright = tiny::all()
-        .into_iter()
-        .find(|tiny| tiny.name == "environment");
-    let bright = bright.unwrap().plan().data;
+    let bright = tiny::named("environment").plan().data;
     for buffer in [Buffer::Environment, Buffer::Texels] {
         assert!(data.buffer(buffer).is_empty());
         data.buffer_mut(buffer).extend(bright.buffer(buffer));

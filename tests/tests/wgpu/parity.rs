@@ -69,10 +69,7 @@ fn paths_from_both_ends() {
         "drink",
         "prism",
     ];
-    let all = tiny::all();
-    for name in names {
-        let tiny = all.iter().find(|tiny| tiny.name == name);
-        let tiny = tiny.unwrap_or_else(|| panic!("no tiny scene is called {name}"));
+    for tiny in names.map(tiny::named) {
         let subject = Subject::from_both_ends(&tiny.scene, &tiny.options);
         for mapping in MAPPINGS {
             subject.agrees(machine, mapping, &look);

@@ -9,7 +9,7 @@ use residual_render::film::{Film, SampleSet, TILE_SIZE};
 use residual_render::passes::{MAX_PASS, Pass, RenderOptions};
 use residual_render::tracer::{AnySharing, TracerNode};
 use residual_scenegen::desc::SceneDesc;
-use residual_scenegen::plan::{CullingRule, Plan, PlanOptions, plan};
+use residual_scenegen::plan::{Plan, PlanOptions, plan};
 use residual_tests::pictures::first_difference;
 use residual_tests::{Look, Prepared, read_scene, scene_files, scenes};
 
@@ -36,8 +36,6 @@ impl Subject {
     pub(crate) fn from_both_ends(scene: &SceneDesc, options: &PlanOptions) -> Self {
         let options = PlanOptions {
             tracer: TracerNode::Bidirectional(AnySharing::Combined),
-            // Light paths need surfaces that block light from both sides.
-            culling: CullingRule::None,
             ..options.clone()
         };
         Self::of(scene, &options)

@@ -100,20 +100,16 @@ impl First<'_> {
         let filters = self.materials.filter();
         camera::set_other_records(&camera, self.options, filters, bounds, &mut data);
         let triangles = if only_camera { self.data } else { &data };
-        *data.buffer_mut(Buffer::Media) = media_at_camera::media_words(
-            self.materials,
-            &data.record(0),
-            triangles,
-            &self.geometry.objects,
-        );
+        let (materials, objects) = (self.materials, &self.geometry.objects);
+        let media = media_at_camera::media_words(materials, &data.record(0), triangles, objects);
         if let Some(clip) = shot.camera.clip {
-            let triangles = if only_camera { self.data } else { &data };
             let record = data.record(0);
             let looked = clip_distances::look(clip, &shot.camera, &record, triangles);
             if let Clipping::Something(warning) = looked {
                 new_warnings.push(warning);
             }
         }
+        *data.buffer_mut(Buffer::Media) = media;
         *depth = depth.max(bounds.farthest(shot.camera.position));
         for warning in new_warnings {
             if !warnings.contains(&warning) {
