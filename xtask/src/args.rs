@@ -4,10 +4,12 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use anyhow::{Result, ensure};
 use clap::{Args, Parser, Subcommand};
 use residual_device_cpu::LaneCount;
 use residual_frontend::options::Size;
 use residual_render::layer::{Layer, Layers};
+use residual_render::tracer::TracerNode;
 use residual_scenegen::plan::{Aperture, Focus, Optics};
 
 use crate::choices::{
@@ -148,15 +150,15 @@ pub(crate) struct SceneArgs {
     /// Where on emitting triangles light samples lie
     #[arg(long, value_enum, default_value_t = LightPlacesArg::Auto)]
     pub(crate) light_places: LightPlacesArg,
-    /// How light is weighed that is found by sampling lights and by following the BSDF
-    #[arg(long, value_enum, default_value_t = MisArg::Power)]
-    pub(crate) mis: MisArg,
+    /// How --tracer path weighs light that is found by sampling lights and by following the BSDF [default: power]
+    #[arg(long, value_enum)]
+    pub(crate) mis: Option<MisArg>,
     /// What is computed along rays
     #[arg(long, value_enum, default_value_t = TracerArg::Path)]
     pub(crate) tracer: TracerArg,
-    /// What --tracer debug shows
-    #[arg(long, value_enum, default_value_t = ViewArg::Normals)]
-    pub(crate) view: ViewArg,
+    /// What --tracer debug shows [default: normals]
+    #[arg(long, value_enum)]
+    pub(crate) view: Option<ViewArg>,
     /// Layers of an EXR beside radiance, with commas between them: albedo, normal, depth, position, object_index,
     /// material_index, sample_count, variance, standard_error; crypto_object and crypto_material, ids of names (Cryptomatte)
     #[arg(long, value_name = "LAYER", value_delimiter = ',')]
@@ -167,9 +169,23 @@ pub(crate) struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// Whether the tracer has paths from lights.
-    pub(crate) fn has_light_paths(&self) -> bool {
-        self.tracer.node(self.view, self.mis).has_light_paths()
+    /// What is computed along rays.
+    pub(crate) fn tracer(&self) -> TracerNode {
+        let view = self.view.unwrap_or(ViewArg::Normals);
+        self.tracer.node(view, self.mis.unwrap_or(MisArg::Power))
+    }
+
+    /// Options that say something of a tracer are for that tracer.
+    pub(crate) fn check_tracer(&self) -> Result<()> {
+        ensure!(
+            self.mis.is_none() || self.tracer == TracerArg::Path,
+            "--mis: it is for --tracer path, whose light is found in two ways; leave it out"
+        );
+        ensure!(
+            self.view.is_none() || self.tracer == TracerArg::Debug,
+            "--view: it is for --tracer debug; add that, or leave it out"
+        );
+        Ok(())
     }
 
     /// What is put before the camera's eye.

@@ -17,7 +17,7 @@ use crate::time::Exposure;
 
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     ensure!(
-        !(args.render.adaptive && args.scene.has_light_paths()),
+        !(args.render.adaptive && args.scene.tracer().has_light_paths()),
         "--adaptive: paths from lights add to any pixel, so that no pixel can have more of them; render with --tracer path"
     );
     let session = Session::new(

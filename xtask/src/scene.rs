@@ -56,6 +56,7 @@ pub(crate) fn subject<'a>(plan: &'a Plan, manifests: &'a [Manifest]) -> Subject<
 
 /// Reads the scene, and says how it is to be planned.
 fn read(args: &SceneArgs, exposure: Exposure) -> Result<(SceneDesc, PlanOptions)> {
+    args.check_tracer()?;
     let environment = args.env.as_ref().map(|path| EnvironmentOptions {
         path: path.clone(),
         strength: args.env_strength,
@@ -73,7 +74,7 @@ fn read(args: &SceneArgs, exposure: Exposure) -> Result<(SceneDesc, PlanOptions)
         },
     )?;
     set_light_sizes(args, &mut scene);
-    let tracer = args.tracer.node(args.view, args.mis);
+    let tracer = args.tracer();
     let needs_light = tracer.needs_light() && !scene.instances.is_empty();
     match args.studio {
         StudioArg::Auto if needs_light && scene.is_unlit() => {

@@ -195,6 +195,7 @@ pub use precision::triangle_test::Precision;
 pub use precision::watertight::Watertight;
 pub use ray::{Hit, Ray};
 pub use simd::Width;
+pub use trace::apart::Apart;
 pub use trace::cost::{TraversalCost, traversal_cost};
 pub use trace::one_by_one::OneByOne;
 pub use trace::prefetch::prefetch;

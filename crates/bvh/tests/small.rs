@@ -7,8 +7,8 @@
 
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
-    AllHits, Boxes, BuildQuality, Bvh, BvhView, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packet,
-    Packets, Phased, QuantizedBvh, Ray, Single, Watertight, Width, build, build_compact,
+    AllHits, Apart, Boxes, BuildQuality, Bvh, BvhView, Exact, Fast, Hit, Hybrid, Kernel, OneByOne,
+    Packet, Packets, Phased, QuantizedBvh, Ray, Single, Watertight, Width, build, build_compact,
 };
 
 /// Squares behind each other, two triangles each.
@@ -46,27 +46,27 @@ fn check<S, const N: usize, const P: usize>(
 {
     let rays = rays();
     let mut expected = vec![Hit::miss(0.0); rays.len()];
-    Single.closest_hits(simd, Watertight, bvh, &rays, &mut expected, &AllHits);
+    Apart(Single).closest_hits(simd, Watertight, bvh, &rays, &mut expected, &AllHits);
     let hit: Vec<bool> = expected.iter().map(Hit::is_hit).collect();
     assert_eq!(hit, [true, true, true, true, true, true, false, false]);
     for (i, hit) in expected[..6].iter().enumerate() {
         assert_eq!((hit.prim / 2, hit.t), (i as u32, 0.5));
     }
     let mut hits = expected.clone();
-    Packets::<4>.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
+    Apart(Packets::<4>).closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
     assert_eq!(hits, expected);
-    OneByOne.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
+    Apart(OneByOne).closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
     assert_eq!(hits, expected);
-    Hybrid::<4>.closest_hits(simd, Exact, bvh, &rays, &mut hits, &AllHits);
+    Apart(Hybrid::<4>).closest_hits(simd, Exact, bvh, &rays, &mut hits, &AllHits);
     assert!(hits.iter().zip(&expected).all(|(a, b)| a.prim == b.prim));
     let mut occluded = vec![false; rays.len()];
-    Phased.closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
+    Apart(Phased).closest_hits(simd, Watertight, bvh, &rays, &mut hits, &AllHits);
     assert_eq!(hits, expected);
-    Phased.any_hits(simd, Watertight, bvh, &rays, &mut occluded, &AllHits);
+    Apart(Phased).any_hits(simd, Watertight, bvh, &rays, &mut occluded, &AllHits);
     assert_eq!(occluded, hit);
-    Packets::<4>.any_hits(simd, Fast, bvh, &rays, &mut occluded, &AllHits);
+    Apart(Packets::<4>).any_hits(simd, Fast, bvh, &rays, &mut occluded, &AllHits);
     assert_eq!(occluded, hit);
-    Single.any_hits(simd, Fast, bvh, &rays, &mut occluded, &AllHits);
+    Apart(Single).any_hits(simd, Fast, bvh, &rays, &mut occluded, &AllHits);
     assert_eq!(occluded, hit);
 }
 
@@ -136,12 +136,12 @@ fn streams_through_many_nodes() {
         let mut hits = expected.clone();
         let mut occluded = vec![false; rays.len()];
         dispatch!(Level::new(), simd => {
-            Single.closest_hits(simd, Watertight, bvh.view(), &rays, &mut expected, &AllHits);
-            Hybrid::<4>.closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
+            Apart(Single).closest_hits(simd, Watertight, bvh.view(), &rays, &mut expected, &AllHits);
+            Apart(Hybrid::<4>).closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
             assert_eq!(hits, expected);
-            Hybrid::<16>.closest_hits(simd, Watertight, compact.view(), &rays, &mut hits, &AllHits);
+            Apart(Hybrid::<16>).closest_hits(simd, Watertight, compact.view(), &rays, &mut hits, &AllHits);
             assert_eq!(hits, expected);
-            Hybrid::<8>.any_hits(simd, Watertight, compact.view(), &rays, &mut occluded, &AllHits);
+            Apart(Hybrid::<8>).any_hits(simd, Watertight, compact.view(), &rays, &mut occluded, &AllHits);
         });
         let hit: Vec<bool> = expected.iter().map(Hit::is_hit).collect();
         assert_eq!(occluded, hit);
@@ -165,10 +165,10 @@ fn streams_of_many_rays() {
     let mut expected = vec![Hit::miss(0.0); rays.len()];
     let mut hits = expected.clone();
     dispatch!(Level::new(), simd => {
-        Single.closest_hits(simd, Watertight, bvh.view(), &rays, &mut expected, &AllHits);
-        Hybrid::<4>.closest_hits(simd, Watertight, compact.view(), &rays, &mut hits, &AllHits);
+        Apart(Single).closest_hits(simd, Watertight, bvh.view(), &rays, &mut expected, &AllHits);
+        Apart(Hybrid::<4>).closest_hits(simd, Watertight, compact.view(), &rays, &mut hits, &AllHits);
         assert_eq!(hits, expected);
-        Hybrid::<4>.closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
+        Apart(Hybrid::<4>).closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
     });
     assert_eq!(hits, expected);
     assert!(hits.iter().any(Hit::is_hit) && !hits.iter().all(Hit::is_hit));

@@ -5,8 +5,8 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, CompactBvh, Culling, Hit, HitFilter, Hybrid, Kernel, MarkedHits,
-    Precision, Ray, Watertight, build, build_compact, traversal_cost,
+    AllHits, Apart, BuildQuality, Bvh, CompactBvh, Culling, Hit, HitFilter, Hybrid, Kernel,
+    MarkedHits, Precision, Ray, Watertight, build, build_compact, traversal_cost,
 };
 use residual_render::scene_data::SceneData;
 
@@ -167,12 +167,12 @@ macro_rules! with_tree {
     ($S:ident, $tree:expr, $kernel:ident, $bvh:ident => $call:expr) => {
         match $tree {
             Tree::Four(bvh) => {
-                let ($kernel, $bvh) = (Hybrid::<4>, bvh.view());
+                let ($kernel, $bvh) = (Apart(Hybrid::<4>), bvh.view());
                 $call
             }
             Tree::Eight(bvh) => {
                 if const { native::<$S>() == 8 } {
-                    let ($kernel, $bvh) = (Hybrid::<8>, bvh.view());
+                    let ($kernel, $bvh) = (Apart(Hybrid::<8>), bvh.view());
                     $call
                 } else {
                     unreachable!("built for another instruction set")
@@ -180,7 +180,7 @@ macro_rules! with_tree {
             }
             Tree::Sixteen(bvh) => {
                 if const { native::<$S>() >= 16 } {
-                    let ($kernel, $bvh) = (Hybrid::<16>, bvh.view());
+                    let ($kernel, $bvh) = (Apart(Hybrid::<16>), bvh.view());
                     $call
                 } else {
                     unreachable!("built for another instruction set")

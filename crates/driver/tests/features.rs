@@ -7,9 +7,14 @@ use residual_driver::cargo;
 
 /// All that a package is built from, each with its version and features, as cargo resolves them for this package alone.
 fn built_from(package: &str) -> BTreeSet<String> {
+    tree(&["--package", package, "--edges", "normal,build"])
+}
+
+/// What cargo resolves for what the arguments choose.
+fn tree(arguments: &[&str]) -> BTreeSet<String> {
     let output = cargo::command()
-        .args(["tree", "--offline", "--package", package])
-        .args(["--edges", "normal,build", "--prefix", "none"])
+        .args(["tree", "--offline", "--prefix", "none"])
+        .args(arguments)
         .args(["--format", "{p} with features {f}"])
         .output()
         .unwrap();
@@ -33,4 +38,18 @@ fn what_is_built_around_emitted_code_has_nothing_else_built_again() {
         };
         assert!(only.starts_with(&format!("{around} ")), "{only}");
     }
+}
+
+/// Tests follow on the command line's build. What asks for other features then is to be asked for by bvh or frontend, too: their
+/// Cargo.toml have lists.
+#[test]
+fn tests_have_nothing_built_again_behind_the_command_line() {
+    let program = built_from("xtask");
+    let tests = tree(&["--workspace", "--edges", "normal,build,dev"]);
+    let again: Vec<_> = program
+        .difference(&tests)
+        // These have a feature of their own for the GPU device.
+        .filter(|crate_| !crate_.starts_with("xtask ") && !crate_.starts_with("residual-driver "))
+        .collect();
+    assert!(again.is_empty(), "{again:#?}");
 }

@@ -89,3 +89,25 @@ fn unknown_layers_and_tracers_are_bad_usage() {
         assert!(texts.iter().all(|text| message.contains(text)), "{message}");
     }
 }
+
+/// Options of one tracer are not ignored by others.
+#[test]
+fn options_of_other_tracers_are_errors() {
+    let folder = workplace();
+    for (args, option) in [
+        (
+            &["--tracer", "bidirectional", "--mis", "balance"][..],
+            "--mis",
+        ),
+        (&["--tracer", "ao", "--mis", "power"], "--mis"),
+        (&["--view", "cost"], "--view"),
+    ] {
+        let output = render(&folder, &[&["triangle.obj"], args].concat());
+        assert_eq!(output.status.code(), Some(1), "{args:?}");
+        let message = stderr(&output);
+        assert!(
+            message.contains(&format!("{option}: it is for")),
+            "{message}"
+        );
+    }
+}

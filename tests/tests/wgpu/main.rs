@@ -16,19 +16,45 @@ mod recorded;
 mod subject;
 
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-use residual_device_wgpu::{Error, Gpu, Probe};
+use residual_device_wgpu::{Error, Gpu, Mapping, Probe};
 
-/// The adapter of all tests, opened and probed once.
+const MAPPINGS: [Mapping; 2] = [Mapping::Wavefront, Mapping::Megakernel];
+
+/// The adapter of all tests, opened and probed.
 struct Machine {
     gpu: Gpu,
     probe: Probe,
 }
 
+impl Machine {
+    /// Of scenes that are much alike, every `step`-th is enough: software drivers take seconds to compile the kernels of each.
+    fn step(&self) -> usize {
+        if self.gpu.adapter.kind == "software" {
+            3
+        } else {
+            1
+        }
+    }
+
+    /// The mappings with which one of many scenes is rendered: both, if it is one of those that are enough.
+    fn mappings(&self, index: usize) -> &'static [Mapping] {
+        if index.is_multiple_of(self.step()) {
+            &MAPPINGS
+        } else {
+            &[Mapping::Wavefront]
+        }
+    }
+}
+
 /// The adapter; prints that the test is skipped where there is none.
 fn machine() -> Option<&'static Machine> {
-    static MACHINE: OnceLock<Option<Machine>> = OnceLock::new();
-    let machine = MACHINE.get_or_init(|| match Gpu::open(None) {
+    // A device does one thing at a time, and compiling kernels is what software drivers do most: two of them, in turns.
+    static MACHINES: [OnceLock<Option<Machine>>; 2] = [const { OnceLock::new() }; 2];
+    static NEXT: AtomicUsize = AtomicUsize::new(0);
+    let next = NEXT.fetch_add(1, Ordering::Relaxed) % MACHINES.len();
+    let machine = MACHINES[next].get_or_init(|| match Gpu::open(None) {
         Ok(gpu) => {
             let probe = gpu.probe().unwrap_or_else(|error| panic!("{error}"));
             Some(Machine { gpu, probe })

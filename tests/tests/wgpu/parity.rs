@@ -7,19 +7,17 @@ use residual_render::tracer::{DebugView, TracerNode};
 use residual_scenegen::plan::PlanOptions;
 use residual_tests::{Look, fixtures, tiny};
 
-use crate::exact_machine;
 use crate::subject::{Subject, difference, for_each_shared};
+use crate::{MAPPINGS, exact_machine};
 
-const MAPPINGS: [Mapping; 2] = [Mapping::Wavefront, Mapping::Megakernel];
-
-/// Every shared scene of a folder, as a wavefront.
+/// The shared scenes of a folder, as a wavefront.
 fn check_folder(folder: &str, at_least: usize) {
     let Some(machine) = exact_machine() else {
         return;
     };
     let look = Look::new([64; 2], 2);
     let check = |subject: Subject| subject.agrees(machine, Mapping::Wavefront, &look);
-    for_each_shared(folder, at_least, look.size, check);
+    for_each_shared(folder, at_least, machine.step(), look.size, check);
 }
 
 #[test]
@@ -37,15 +35,15 @@ fn scenes_of_materials() {
     check_folder("materials", 25);
 }
 
-/// Every kind of surface, texture, light, camera and sampler, in both mappings. The size is no multiple of a block.
+/// Every kind of surface, texture, light, camera and sampler. The size is no multiple of a block.
 #[test]
-fn tiny_scenes_in_both_mappings() {
+fn tiny_scenes() {
     let Some(machine) = exact_machine() else {
         return;
     };
-    for tiny in tiny::all() {
+    for (index, tiny) in tiny::all().into_iter().enumerate() {
         let subject = Subject::new(tiny.plan());
-        for mapping in MAPPINGS {
+        for &mapping in machine.mappings(index) {
             subject.agrees(machine, mapping, &Look::new(tiny::SIZE, 3));
         }
     }
@@ -69,9 +67,9 @@ fn paths_from_both_ends() {
         "drink",
         "prism",
     ];
-    for tiny in names.map(tiny::named) {
+    for (index, tiny) in names.map(tiny::named).into_iter().enumerate() {
         let subject = Subject::from_both_ends(&tiny.scene, &tiny.options);
-        for mapping in MAPPINGS {
+        for &mapping in machine.mappings(index) {
             subject.agrees(machine, mapping, &look);
         }
     }
@@ -172,7 +170,7 @@ fn tracers_and_layers() {
         .map(TracerNode::Debug);
     let tracers = [TracerNode::default(), TracerNode::AmbientOcclusion];
     let size = [37, 29];
-    for tracer in tracers.into_iter().chain(views) {
+    for (index, tracer) in tracers.into_iter().chain(views).enumerate() {
         for (scene, layers) in [
             (fixtures::textures(), Layer::ALL.into_iter().collect()),
             (fixtures::lights(), Layers::NONE),
@@ -188,7 +186,7 @@ fn tracers_and_layers() {
                 ..Look::new(size, 3)
             };
             let subject = Subject::of(&scene, &options);
-            for mapping in MAPPINGS {
+            for &mapping in machine.mappings(index) {
                 subject.agrees(machine, mapping, &look);
             }
         }

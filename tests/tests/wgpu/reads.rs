@@ -99,7 +99,7 @@ fn paths_from_both_ends_read_within_bounds() {
 fn shared_scenes_are_read_within_bounds() {
     let look = Look::new([24; 2], 1);
     for (folder, at_least) in [("interiors", 7), ("materials", 25)] {
-        for_each_shared(folder, at_least, look.size, |subject| {
+        for_each_shared(folder, at_least, 1, look.size, |subject| {
             check(&subject, &look)
         });
     }

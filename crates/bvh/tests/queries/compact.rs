@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fearless_simd::{Level, Simd, dispatch};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, BvhView, CompactBvh, CompactPacket, Exact, Fast, FrontHits, Hit,
-    HitFilter, Hybrid, Kernel, LeafTooLarge, MarkedHits, OneByOne, Packet, Packets, Phased,
+    AllHits, Apart, BuildQuality, Bvh, BvhView, CompactBvh, CompactPacket, Exact, Fast, FrontHits,
+    Hit, HitFilter, Hybrid, Kernel, LeafTooLarge, MarkedHits, OneByOne, Packet, Packets, Phased,
     Precision, Ray, Single, TrianglePacket, Watertight, WideNode, Width, build, build_compact,
 };
 
@@ -130,8 +130,8 @@ fn check_kernel<S, const N: usize, F: HitFilter, K>(
 {
     let mut hits = vec![Hit::miss(0.0); rays.len()];
     let mut occluded = vec![false; rays.len()];
-    kernel.closest_hits(simd, precision, bvh.view(), rays, &mut hits, filter);
-    kernel.any_hits(simd, precision, bvh.view(), rays, &mut occluded, filter);
+    Apart(kernel).closest_hits(simd, precision, bvh.view(), rays, &mut hits, filter);
+    Apart(kernel).any_hits(simd, precision, bvh.view(), rays, &mut occluded, filter);
     for (((ray, hit), occluded), expected) in rays.iter().zip(&hits).zip(&occluded).zip(expected) {
         assert!(
             same(hit, expected),
@@ -141,7 +141,7 @@ fn check_kernel<S, const N: usize, F: HitFilter, K>(
     }
 }
 
-/// Holds the kernels of streams against the oracle, with a filter.
+/// Holds the kernel that calls the others against the oracle, with a filter.
 fn check_filter<F: HitFilter>(mesh: &Mesh, rays: &[Ray], filter: &F) {
     let expected: Vec<Hit> = rays
         .iter()
@@ -149,8 +149,7 @@ fn check_filter<F: HitFilter>(mesh: &Mesh, rays: &[Ray], filter: &F) {
         .collect();
     let bvh = compact::<16>(mesh, BuildQuality::High);
     dispatch!(Level::new(), simd => {
-        check_kernel(simd, Phased, Watertight, &bvh, rays, filter, &expected);
-        check_kernel(simd, Packets::<16>, Watertight, &bvh, rays, filter, &expected);
+        check_kernel(simd, Hybrid::<16>, Watertight, &bvh, rays, filter, &expected);
     });
 }
 
@@ -164,13 +163,14 @@ fn check(mesh: &Mesh, rays: &[Ray]) -> usize {
         let (four, sixteen) = (compact::<4>(mesh, quality), compact::<16>(mesh, quality));
         on_every_instruction_set!(simd => {
             check_kernel(simd, Single, Watertight, &four, rays, &AllHits, &expected);
-            check_kernel(simd, Packets::<16>, Watertight, &sixteen, rays, &AllHits, &expected);
         });
         dispatch!(Level::new(), simd => {
+            check_kernel(simd, Packets::<16>, Watertight, &sixteen, rays, &AllHits, &expected);
             check_kernel(simd, OneByOne, Watertight, &four, rays, &AllHits, &expected);
-            check_kernel(simd, Hybrid::<16>, Watertight, &sixteen, rays, &AllHits, &expected);
+            check_kernel(simd, Phased, Watertight, &sixteen, rays, &AllHits, &expected);
         });
     }
+    check_filter(mesh, rays, &AllHits);
     check_filter(mesh, rays, &FrontHits);
     check_filter(mesh, rays, &MarkedHits);
     check_filter(mesh, rays, &Holes);
@@ -232,14 +232,12 @@ fn precisions_agree_with_plain_packets() {
     let compact = compact::<16>(&mesh, BuildQuality::High);
     let mut expected = vec![Hit::miss(0.0); rays.len()];
     dispatch!(Level::new(), simd => {
-        Single.closest_hits(simd, Exact, plain.view(), &rays, &mut expected, &AllHits);
+        Apart(Single).closest_hits(simd, Exact, plain.view(), &rays, &mut expected, &AllHits);
         check_kernel(simd, Single, Exact, &compact, &rays, &AllHits, &expected);
-        check_kernel(simd, Phased, Exact, &compact, &rays, &AllHits, &expected);
-        check_kernel(simd, Packets::<16>, Exact, &compact, &rays, &AllHits, &expected);
-        Single.closest_hits(simd, Fast, plain.view(), &rays, &mut expected, &AllHits);
+        check_kernel(simd, Hybrid::<16>, Exact, &compact, &rays, &AllHits, &expected);
+        Apart(Single).closest_hits(simd, Fast, plain.view(), &rays, &mut expected, &AllHits);
         check_kernel(simd, Single, Fast, &compact, &rays, &AllHits, &expected);
-        check_kernel(simd, Phased, Fast, &compact, &rays, &AllHits, &expected);
-        check_kernel(simd, Packets::<16>, Fast, &compact, &rays, &AllHits, &expected);
+        check_kernel(simd, Hybrid::<16>, Fast, &compact, &rays, &AllHits, &expected);
     });
     assert!(expected.iter().filter(|hit| hit.is_hit()).count() > rays.len() / 3);
 }

@@ -6,14 +6,14 @@ use std::fmt::Debug;
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets, Phased,
-    Precision, Ray, Single, Watertight, Width, build, closest_hit,
+    AllHits, Apart, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets, Phased,
+    Precision, Ray, Single, Watertight, Width, build,
 };
 
 use crate::mesh::{Mesh, jittered_icosphere};
 use crate::oracle::{closest_hit_of_all, exact_closest_hit_of_all};
 use crate::random::Random;
-use crate::runner::{aimed, same};
+use crate::runner::{aimed, closest_hit, same};
 use crate::tally::{Counts, Tally, check};
 
 /// Rays that are traced as one stream: not a whole number of windows or packets.
@@ -34,7 +34,7 @@ struct Scene {
 /// kernels, with packets of `R` rays, and how exactly. A table, since every entry takes a second to
 /// compile.
 macro_rules! combinations {
-    ($module:ident: $($tree:ident($n:literal, $p:literal, $r:literal) $by:ident $($precision:ident)*;)*) => {
+    ($module:ident: $($tree:ident($n:literal, $p:literal, $r:literal): $($by:ident $($precision:ident)*),*;)*) => {
         mod $module {
             use super::*;
 
@@ -51,7 +51,7 @@ macro_rules! combinations {
                 }
 
                 pub(super) fn compare<S: Simd>(&self, simd: S, batch: &Batch, tally: &mut Tally) {
-                    $($($by::<S, _, $n, $p, $r>(simd, $precision, &self.$tree, batch, tally);)*)*
+                    $($($($by::<S, _, $n, $p, $r>(simd, $precision, &self.$tree, batch, tally);)*)*)*
                 }
             }
         }
@@ -61,25 +61,25 @@ macro_rules! combinations {
 // For the best instruction set. Without lanes (trees of one triangle a packet, the kernel without SIMD)
 // `Fast` does not fuse, and gives other bits.
 combinations!(best:
-    n2p1(2, 1, 4) by_all Watertight;
-    n2p4(2, 4, 8) by_all Exact;
-    n4p1(4, 1, 8) by_all Exact;
-    n4p4(4, 4, 4) by_all Fast Watertight;
-    n4p8(4, 8, 16) by_all Watertight;
-    n8p4(8, 4, 16) by_all Exact;
-    n8p8(8, 8, 8) by_all Fast Watertight Exact;
-    n8p16(8, 16, 4) by_all Watertight;
-    n16p8(16, 8, 8) by_all Watertight;
-    n16p16(16, 16, 16) by_all Fast Exact;
-    n2p8(2, 8, 4) by_one_by_one Watertight;
-    n4p16(4, 16, 4) by_one_by_one Exact;
-    n8p1(8, 1, 4) by_one_by_one Exact;
-    n16p4(16, 4, 4) by_one_by_one Watertight;
+    n2p1(2, 1, 4): by_rays Watertight;
+    n2p4(2, 4, 8): by_hybrid Exact;
+    n4p1(4, 1, 8): by_hybrid Exact;
+    n4p4(4, 4, 4): by_all Fast, by_hybrid Watertight;
+    n4p8(4, 8, 16): by_hybrid Watertight;
+    n8p4(8, 4, 16): by_rays Exact;
+    n8p8(8, 8, 8): by_all Watertight, by_hybrid Fast Exact;
+    n8p16(8, 16, 4): by_rays Watertight;
+    n16p8(16, 8, 8): by_hybrid Watertight;
+    n16p16(16, 16, 16): by_all Exact, by_rays Fast;
+    n2p8(2, 8, 4): by_one_by_one Watertight;
+    n4p16(4, 16, 4): by_one_by_one Exact;
+    n8p1(8, 1, 4): by_one_by_one Exact;
+    n16p4(16, 4, 4): by_one_by_one Watertight;
 );
-// For the lesser ones.
+// For the lesser ones: the kernel that calls the others.
 combinations!(others:
-    n4p4(4, 4, 4) by_some Fast Exact;
-    n8p8(8, 8, 8) by_some Watertight;
+    n4p4(4, 4, 4): by_hybrid Fast Exact;
+    n8p8(8, 8, 8): by_hybrid Watertight;
 );
 
 /// A stream of rays and what they must hit.
@@ -123,11 +123,25 @@ fn by_all<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
 ) where
     S: Width<N> + Width<P> + Width<R>,
 {
-    by_some::<S, Pr, N, P, R>(simd, precision, bvh, batch, tally);
+    by_rays::<S, Pr, N, P, R>(simd, precision, bvh, batch, tally);
     compare(simd, Packets::<R>, precision, bvh, batch, tally, 1);
+    by_hybrid::<S, Pr, N, P, R>(simd, precision, bvh, batch, tally);
 }
 
-fn by_some<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
+fn by_rays<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
+    simd: S,
+    precision: Pr,
+    bvh: &Bvh<N, P>,
+    batch: &Batch,
+    tally: &mut Tally,
+) where
+    S: Width<N> + Width<P>,
+{
+    compare(simd, Single, precision, bvh, batch, tally, 0);
+    compare(simd, Phased, precision, bvh, batch, tally, 4);
+}
+
+fn by_hybrid<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
     simd: S,
     precision: Pr,
     bvh: &Bvh<N, P>,
@@ -136,9 +150,7 @@ fn by_some<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
 ) where
     S: Width<N> + Width<P> + Width<R>,
 {
-    compare(simd, Single, precision, bvh, batch, tally, 0);
     compare(simd, Hybrid::<R>, precision, bvh, batch, tally, 2);
-    compare(simd, Phased, precision, bvh, batch, tally, 4);
 }
 
 fn by_one_by_one<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
@@ -167,13 +179,9 @@ fn compare<S, Pr: Judged, const N: usize, const P: usize>(
     let (rays, expected, counts) = (&batch.rays, Pr::of(batch), Pr::counts(tally));
     let mut hits = vec![Hit::miss(0.0); rays.len()];
     let mut occluded = vec![false; rays.len()];
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            kernel.closest_hits(simd, precision, bvh.view(), rays, &mut hits, &AllHits);
-            kernel.any_hits(simd, precision, bvh.view(), rays, &mut occluded, &AllHits);
-        },
-    );
+    let apart = Apart(kernel);
+    apart.closest_hits(simd, precision, bvh.view(), rays, &mut hits, &AllHits);
+    apart.any_hits(simd, precision, bvh.view(), rays, &mut occluded, &AllHits);
     for i in 0..rays.len() {
         let kind = usize::from(batch.aimed[i]);
         counts.answers[index][kind] += 1;
@@ -280,10 +288,7 @@ impl Scene {
             }
             best
         };
-        simd.vectorize(
-            #[inline(always)]
-            || rays.iter().map(closest).collect(),
-        )
+        rays.iter().map(closest).collect()
     }
 
     /// One batch of rays through everything.

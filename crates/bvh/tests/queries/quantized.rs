@@ -2,8 +2,8 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 use residual_bvh::{
-    AllHits, Bounds, Boxes, BuildQuality, Bvh, BvhView, Hit, Hybrid, InvalidBvh, Kernel, Packets,
-    Phased, QuantizedBvh, QuantizedNode, Ray, Single, Watertight, WideNode, Width, build,
+    AllHits, Apart, Bounds, Boxes, BuildQuality, Bvh, BvhView, Hit, Hybrid, InvalidBvh, Kernel,
+    Packets, Phased, QuantizedBvh, QuantizedNode, Ray, Single, Watertight, WideNode, Width, build,
 };
 
 use crate::mesh::{Mesh, grid, jittered_icosphere, soup};
@@ -239,8 +239,8 @@ fn check(mesh: &Mesh, rays: &[Ray]) -> usize {
         macro_rules! check_widths {
             ($simd:ident, $kernel:expr, $($n:literal x $p:literal)*) => {$(
                 check_width::<$n, $p>(mesh, rays, quality, &expected, |view, hits, occluded| {
-                    $kernel.closest_hits($simd, Watertight, view, rays, hits, &AllHits);
-                    $kernel.any_hits($simd, Watertight, view, rays, occluded, &AllHits);
+                    Apart($kernel).closest_hits($simd, Watertight, view, rays, hits, &AllHits);
+                    Apart($kernel).any_hits($simd, Watertight, view, rays, occluded, &AllHits);
                 });
             )*};
         }
@@ -248,9 +248,9 @@ fn check(mesh: &Mesh, rays: &[Ray]) -> usize {
             check_widths!(simd, Single, 2 x 1 4 x 4 8 x 8 16 x 16);
         });
         dispatch!(Level::new(), simd => {
-            check_widths!(simd, Packets::<8>, 4 x 4 8 x 4 16 x 16);
+            check_widths!(simd, Packets::<8>, 4 x 4 16 x 16);
             check_widths!(simd, Phased, 4 x 4 8 x 8 16 x 16);
-            check_widths!(simd, Hybrid::<8>, 4 x 4 8 x 8 16 x 8);
+            check_widths!(simd, Hybrid::<8>, 8 x 8);
         });
     }
     expected.iter().filter(|hit| hit.is_hit()).count()

@@ -1,8 +1,8 @@
 //! The one runner, which holds every width and instruction set against the oracle.
 use fearless_simd::{Level, Simd};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, FrontHits, Hit, HitFilter, MarkedHits, Ray, Watertight, any_hit,
-    build, closest_hit,
+    AllHits, Boxes, BuildQuality, Bvh, BvhView, FrontHits, Hit, HitFilter, MarkedHits, Packet,
+    Precision, Ray, Watertight, Width, build,
 };
 
 use crate::mesh::Mesh;
@@ -21,6 +21,36 @@ pub(crate) fn trials(release: usize) -> usize {
 pub(crate) fn aimed(org: [f32; 3], target: [f32; 3]) -> Ray {
     let dir = [0, 1, 2].map(|axis| target[axis] - org[axis]);
     Ray::unbounded(org, dir)
+}
+
+/// [`residual_bvh::closest_hit`] as a function of its own (see [`residual_bvh::Apart`]).
+#[inline(never)]
+pub(crate) fn closest_hit<S: Width<N> + Width<P>, const N: usize, const P: usize>(
+    simd: S,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
+    ray: &Ray,
+    filter: &impl HitFilter,
+) -> Hit {
+    simd.vectorize(
+        #[inline(always)]
+        || residual_bvh::closest_hit(simd, precision, bvh, ray, filter),
+    )
+}
+
+/// [`residual_bvh::any_hit`] as a function of its own (see [`residual_bvh::Apart`]).
+#[inline(never)]
+pub(crate) fn any_hit<S: Width<N> + Width<P>, const N: usize, const P: usize>(
+    simd: S,
+    precision: impl Precision,
+    bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
+    ray: &Ray,
+    filter: &impl HitFilter,
+) -> bool {
+    simd.vectorize(
+        #[inline(always)]
+        || residual_bvh::any_hit(simd, precision, bvh, ray, filter),
+    )
 }
 
 /// One mesh in hierarchies of all widths.

@@ -2,13 +2,13 @@
 
 use fearless_simd::{Level, dispatch};
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, BvhView, Hit, Hybrid, InvalidBvh, Kernel, LoadError, Ray,
-    Watertight, any_hit, build, closest_hit,
+    AllHits, Apart, BuildQuality, Bvh, BvhView, Hit, Hybrid, InvalidBvh, Kernel, LoadError, Ray,
+    Watertight, build,
 };
 
 use crate::mesh::{Mesh, jittered_icosphere, soup};
 use crate::random::Random;
-use crate::runner::{aimed, same, trials};
+use crate::runner::{aimed, any_hit, closest_hit, same, trials};
 
 const HEADER: usize = 40;
 
@@ -45,7 +45,7 @@ fn traced(bvh: &Bvh<8>, rays: &[Ray]) -> Vec<Hit> {
     let view = bvh.view();
     dispatch!(Level::new(), simd => {
         let mut hits = vec![Hit::miss(0.0); rays.len()];
-        Hybrid::<8>.closest_hits(simd, Watertight, view, rays, &mut hits, &AllHits);
+        Apart(Hybrid::<8>).closest_hits(simd, Watertight, view, rays, &mut hits, &AllHits);
         for (ray, hit) in rays.iter().zip(&hits) {
             let single = closest_hit(simd, Watertight, view, ray, &AllHits);
             assert_eq!(single.is_hit(), hit.is_hit());
@@ -149,7 +149,7 @@ fn flipped_bits_do_no_harm() {
             }
             dispatch!(Level::new(), simd => {
                 let mut hits = [Hit::miss(0.0); 20];
-                Hybrid::<8>.closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
+                Apart(Hybrid::<8>).closest_hits(simd, Watertight, bvh.view(), &rays, &mut hits, &AllHits);
             });
         }
     }
