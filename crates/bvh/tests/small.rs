@@ -37,7 +37,6 @@ fn rays() -> Vec<Ray> {
     rays
 }
 
-#[inline(always)]
 fn check<S, const N: usize, const P: usize>(
     simd: S,
     bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,

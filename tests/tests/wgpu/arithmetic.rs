@@ -36,7 +36,7 @@ fn software_drivers_are_exact() {
         let probe = Gpu::open(Some(&adapter.name)).and_then(|gpu| gpu.probe());
         let probe = probe.unwrap_or_else(|error| panic!("{adapter}: {error}"));
         println!("{adapter}: {:?}: {}", probe.dialect, probe.answers);
-        if adapter.kind == "software" {
+        if adapter.is_software() {
             found = true;
             assert!(probe.is_exact(), "{adapter}: {}", probe.answers);
         }

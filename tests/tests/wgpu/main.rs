@@ -31,11 +31,7 @@ struct Machine {
 impl Machine {
     /// Of scenes that are much alike, every `step`-th is enough: software drivers take seconds to compile the kernels of each.
     fn step(&self) -> usize {
-        if self.gpu.adapter.kind == "software" {
-            3
-        } else {
-            1
-        }
+        if self.gpu.adapter.is_software() { 3 } else { 1 }
     }
 
     /// The mappings with which one of many scenes is rendered: both, if it is one of those that are enough.

@@ -115,7 +115,6 @@ macro_rules! on_every_instruction_set {
 }
 
 /// Holds a kernel against the oracle, both queries.
-#[inline(always)]
 fn check_kernel<S, const N: usize, F: HitFilter, K>(
     simd: S,
     kernel: K,

@@ -7,7 +7,7 @@ use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use residual_bvh::{
     AllHits, Apart, BuildQuality, Bvh, Exact, Fast, Hit, Hybrid, Kernel, OneByOne, Packets, Phased,
-    Precision, Ray, Single, Watertight, Width, build,
+    Precision, Ray, Single, Watertight, build,
 };
 
 use crate::mesh::{Mesh, jittered_icosphere};
@@ -30,11 +30,10 @@ struct Scene {
     alone: Vec<Bvh<4>>,
 }
 
-/// Trees of `N` children a node and `P` triangles a packet, and how each is traced: by which
-/// kernels, with packets of `R` rays, and how exactly. A table, since every entry takes a second to
-/// compile.
+/// Trees of so many children a node and triangles a packet, how exactly each is traced, and by which kernels. A table, since
+/// every entry takes seconds to compile.
 macro_rules! combinations {
-    ($module:ident: $($tree:ident($n:literal, $p:literal, $r:literal): $($by:ident $($precision:ident)*),*;)*) => {
+    ($module:ident: $($tree:ident($n:literal, $p:literal): $($precision:ident [$($kernel:expr),*]),*;)*) => {
         mod $module {
             use super::*;
 
@@ -51,7 +50,7 @@ macro_rules! combinations {
                 }
 
                 pub(super) fn compare<S: Simd>(&self, simd: S, batch: &Batch, tally: &mut Tally) {
-                    $($($($by::<S, _, $n, $p, $r>(simd, $precision, &self.$tree, batch, tally);)*)*)*
+                    $($($(compare(simd, $kernel, $precision, &self.$tree, batch, tally);)*)*)*
                 }
             }
         }
@@ -61,25 +60,25 @@ macro_rules! combinations {
 // For the best instruction set. Without lanes (trees of one triangle a packet, the kernel without SIMD)
 // `Fast` does not fuse, and gives other bits.
 combinations!(best:
-    n2p1(2, 1, 4): by_rays Watertight;
-    n2p4(2, 4, 8): by_hybrid Exact;
-    n4p1(4, 1, 8): by_hybrid Exact;
-    n4p4(4, 4, 4): by_all Fast, by_hybrid Watertight;
-    n4p8(4, 8, 16): by_hybrid Watertight;
-    n8p4(8, 4, 16): by_rays Exact;
-    n8p8(8, 8, 8): by_all Watertight, by_hybrid Fast Exact;
-    n8p16(8, 16, 4): by_rays Watertight;
-    n16p8(16, 8, 8): by_hybrid Watertight;
-    n16p16(16, 16, 16): by_all Exact, by_rays Fast;
-    n2p8(2, 8, 4): by_one_by_one Watertight;
-    n4p16(4, 16, 4): by_one_by_one Exact;
-    n8p1(8, 1, 4): by_one_by_one Exact;
-    n16p4(16, 4, 4): by_one_by_one Watertight;
+    n2p1(2, 1): Watertight [Single, Phased];
+    n2p4(2, 4): Exact [Hybrid::<8>];
+    n4p1(4, 1): Exact [Hybrid::<8>];
+    n4p4(4, 4): Fast [Single, Phased, Packets::<4>, Hybrid::<4>], Watertight [Hybrid::<4>];
+    n4p8(4, 8): Watertight [Hybrid::<16>];
+    n8p4(8, 4): Exact [Single, Phased];
+    n8p8(8, 8): Watertight [Single, Phased, Packets::<8>, Hybrid::<8>], Fast [Hybrid::<8>], Exact [Hybrid::<8>];
+    n8p16(8, 16): Watertight [Single, Phased];
+    n16p8(16, 8): Watertight [Hybrid::<8>];
+    n16p16(16, 16): Exact [Single, Phased, Packets::<16>, Hybrid::<16>], Fast [Single, Phased];
+    n2p8(2, 8): Watertight [OneByOne];
+    n4p16(4, 16): Exact [OneByOne];
+    n8p1(8, 1): Exact [OneByOne];
+    n16p4(16, 4): Watertight [OneByOne];
 );
 // For the lesser ones: the kernel that calls the others.
 combinations!(others:
-    n4p4(4, 4, 4): by_hybrid Fast Exact;
-    n8p8(8, 8, 8): by_hybrid Watertight;
+    n4p4(4, 4): Fast [Hybrid::<4>], Exact [Hybrid::<4>];
+    n8p8(8, 8): Watertight [Hybrid::<8>];
 );
 
 /// A stream of rays and what they must hit.
@@ -114,67 +113,41 @@ macro_rules! implement_judged {
 }
 implement_judged!(Fast, fast, 0; Watertight, watertight, 1; Exact, exact, 2;);
 
-fn by_all<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
-    simd: S,
-    precision: Pr,
-    bvh: &Bvh<N, P>,
-    batch: &Batch,
-    tally: &mut Tally,
-) where
-    S: Width<N> + Width<P> + Width<R>,
-{
-    by_rays::<S, Pr, N, P, R>(simd, precision, bvh, batch, tally);
-    compare(simd, Packets::<R>, precision, bvh, batch, tally, 1);
-    by_hybrid::<S, Pr, N, P, R>(simd, precision, bvh, batch, tally);
+/// A kernel, and its place among [`KERNELS`](crate::tally::KERNELS).
+trait Counted: Copy + Debug {
+    const INDEX: usize;
 }
 
-fn by_rays<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
-    simd: S,
-    precision: Pr,
-    bvh: &Bvh<N, P>,
-    batch: &Batch,
-    tally: &mut Tally,
-) where
-    S: Width<N> + Width<P>,
-{
-    compare(simd, Single, precision, bvh, batch, tally, 0);
-    compare(simd, Phased, precision, bvh, batch, tally, 4);
+impl Counted for Single {
+    const INDEX: usize = 0;
 }
 
-fn by_hybrid<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
-    simd: S,
-    precision: Pr,
-    bvh: &Bvh<N, P>,
-    batch: &Batch,
-    tally: &mut Tally,
-) where
-    S: Width<N> + Width<P> + Width<R>,
-{
-    compare(simd, Hybrid::<R>, precision, bvh, batch, tally, 2);
+impl<const R: usize> Counted for Packets<R> {
+    const INDEX: usize = 1;
 }
 
-fn by_one_by_one<S, Pr: Judged, const N: usize, const P: usize, const R: usize>(
-    simd: S,
-    precision: Pr,
-    bvh: &Bvh<N, P>,
-    batch: &Batch,
-    tally: &mut Tally,
-) where
-    S: Width<N> + Width<P>,
-{
-    compare(simd, OneByOne, precision, bvh, batch, tally, 3);
+impl<const R: usize> Counted for Hybrid<R> {
+    const INDEX: usize = 2;
 }
 
-fn compare<S, Pr: Judged, const N: usize, const P: usize>(
+impl Counted for OneByOne {
+    const INDEX: usize = 3;
+}
+
+impl Counted for Phased {
+    const INDEX: usize = 4;
+}
+
+fn compare<S, K, Pr: Judged, const N: usize, const P: usize>(
     simd: S,
-    kernel: impl Kernel<S, N, P> + Debug,
+    kernel: K,
     precision: Pr,
     bvh: &Bvh<N, P>,
     batch: &Batch,
     tally: &mut Tally,
-    index: usize,
 ) where
-    S: Width<N> + Width<P>,
+    S: Simd,
+    K: Kernel<S, N, P> + Counted,
 {
     let (rays, expected, counts) = (&batch.rays, Pr::of(batch), Pr::counts(tally));
     let mut hits = vec![Hit::miss(0.0); rays.len()];
@@ -184,10 +157,10 @@ fn compare<S, Pr: Judged, const N: usize, const P: usize>(
     apart.any_hits(simd, precision, bvh.view(), rays, &mut occluded, &AllHits);
     for i in 0..rays.len() {
         let kind = usize::from(batch.aimed[i]);
-        counts.answers[index][kind] += 1;
+        counts.answers[K::INDEX][kind] += 1;
         if !same(&hits[i], &expected[i]) || occluded[i] != expected[i].is_hit() {
-            counts.disagreements[index][kind] += 1;
-            if counts.disagreements[index][kind] == 1 {
+            counts.disagreements[K::INDEX][kind] += 1;
+            if counts.disagreements[K::INDEX][kind] == 1 {
                 println!(
                     "{precision:?}, {kernel:?}, {N} children, {P} triangles: {:x?}\n  {:?}, {}, expected {:?}",
                     rays[i], hits[i], occluded[i], expected[i]

@@ -81,7 +81,6 @@ impl Widths {
     }
 
     /// Every width's closest hit, once its any-hit query is known to agree.
-    #[inline(always)]
     fn answers<S: Simd, F: HitFilter>(&self, simd: S, ray: &Ray, filter: &F) -> [Hit; 3] {
         let (w4, w8, w16) = (self.w4.view(), self.w8.view(), self.w16.view());
         let hits = [

@@ -23,7 +23,6 @@ const LENGTHS: [usize; 18] = [
 const RAYS: usize = 1300;
 
 /// Holds a kernel against the expected hits, for streams of all lengths.
-#[inline(always)]
 fn compare<S, const N: usize, const P: usize, F: HitFilter>(
     simd: S,
     kernel: impl Kernel<S, N, P> + Debug,
