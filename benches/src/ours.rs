@@ -144,10 +144,9 @@ pub fn variants() -> Vec<Variant> {
         Phased(Phased, 1): get 8 x 8, Watertight;
         Phased(Phased, 1): get 16 x 16, Watertight;
         Hybrid(Hybrid::<4>, 4): get 4 x 4, Fast;
-        Hybrid(Hybrid::<8>, 8): get 8 x 8, Fast;
         Hybrid(Hybrid::<16>, 16): get 8 x 8, Fast;
         Hybrid(Hybrid::<16>, 16): get 16 x 16, Fast;
-        Hybrid(Hybrid::<8>, 8): get 8 x 8, Watertight;
+        Hybrid(Hybrid::<16>, 16): get 8 x 8, Watertight;
         Hybrid(Hybrid::<16>, 16): get 16 x 16, Watertight;
         Compact(Hybrid::<16>, 16): compact 16 x 16, Fast;
         Compact(Hybrid::<16>, 16): compact 16 x 16, Watertight;

@@ -158,8 +158,8 @@ mod sealed {
     }
 }
 
-/// Rays in a packet of a stream.
-const PACKET: usize = 8;
+/// Rays in a packet of a stream. On eight lanes, too, camera rays are faster by sixteen than by eight.
+const PACKET: usize = 16;
 
 /// A macro, because a function cannot ask that every instruction set has a width.
 macro_rules! implement_dispatch {

@@ -172,7 +172,7 @@ macro_rules! with_tree {
             }
             Tree::Eight(bvh) => {
                 if const { native::<$S>() == 8 } {
-                    let ($kernel, $bvh) = (Apart(Hybrid::<8>), bvh.view());
+                    let ($kernel, $bvh) = (Apart(Hybrid::<16>), bvh.view());
                     $call
                 } else {
                     unreachable!("built for another instruction set")

@@ -7,14 +7,15 @@ use crate::layout::boxes::Boxes;
 use crate::layout::bvh::BvhView;
 use crate::layout::packet::Packet;
 use crate::precision::triangle_test::Precision;
-use crate::ray::{Hit, Ray};
+use crate::ray::Ray;
 use crate::simd::{Width, apart};
+use crate::trace::answers::Answers;
 use crate::trace::exhaustive::ExhaustiveKernel;
 use crate::trace::goal::Goal;
 use crate::trace::packet::PacketKernel;
 use crate::trace::phased::PhasedKernel;
 use crate::trace::triangle_table::TriangleTable;
-use crate::trace::window::{Run, WINDOW, runs};
+use crate::trace::window::{Run, runs};
 
 /// So few nodes stay in the nearest cache, where rays wait for nothing: one after the other takes 0.9 times as long for 36
 /// triangles as many in flight.
@@ -39,9 +40,9 @@ where
     T: Packet<P>,
     G: Goal,
 {
-    /// Finds the hit of each ray; `answer` gets its index and the hit, in whatever order.
+    /// Answers each ray.
     #[inline(always)]
-    pub(crate) fn trace<const R: usize>(&self, rays: &[Ray], mut answer: impl FnMut(usize, Hit))
+    pub(crate) fn trace<const R: usize>(&self, rays: &[Ray], answers: &mut (impl Answers + ?Sized))
     where
         S: Width<N> + Width<P> + Width<R>,
     {
@@ -74,15 +75,12 @@ where
                 .then(|| TriangleTable::of(bvh.packets()))
                 .flatten()
         });
-        let mut hits = [Hit::miss(0.0); WINDOW];
         for run in runs(rays) {
             match run {
                 Run::Coherent(window) => {
-                    let hits = &mut hits[..window.len()];
-                    packets.neighbours::<R>(&rays[window.clone()], hits);
-                    for (index, &hit) in window.zip(hits.iter()) {
-                        answer(index, hit);
-                    }
+                    answers.together(window.clone(), |hits| {
+                        packets.neighbours::<R>(&rays[window], hits);
+                    });
                 }
                 Run::Incoherent(run) if let Some(table) = &*table => {
                     let kernel = ExhaustiveKernel {
@@ -96,17 +94,17 @@ where
                     apart(
                         simd,
                         #[inline(always)]
-                        || kernel.trace(&rays[run], |ray, hit| answer(start + ray, hit)),
+                        || kernel.trace(&rays[run], |ray, hit| answers.one(start + ray, hit)),
                     );
                 }
                 Run::Incoherent(run) if bvh.nodes().len() <= FEW_NODES => {
                     for index in run {
-                        answer(index, packets.single(&rays[index]));
+                        answers.one(index, packets.single(&rays[index]));
                     }
                 }
                 Run::Incoherent(run) => {
                     let start = run.start;
-                    phased.trace(&rays[run], |ray, hit| answer(start + ray, hit));
+                    phased.trace(&rays[run], |ray, hit| answers.one(start + ray, hit));
                 }
             }
         }

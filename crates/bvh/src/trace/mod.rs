@@ -1,6 +1,7 @@
 //! Queries of a hierarchy: one walk, the tests of boxes on its way, and the kernels that are made of
 //! them, for single rays, for packets and for many rays in flight.
 
+mod answers;
 pub(crate) mod apart;
 mod best_hits;
 pub(crate) mod cost;

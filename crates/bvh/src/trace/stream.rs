@@ -7,6 +7,7 @@ use crate::layout::packet::Packet;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
+use crate::trace::answers::Answers;
 use crate::trace::goal::{AnyHit, ClosestHit};
 use crate::trace::hybrid::HybridKernel;
 use crate::trace::packet::PacketKernel;
@@ -58,8 +59,8 @@ pub struct Phased;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Packets<const R: usize>;
 
-/// Where neighbours are alike, packets of `R` rays (4, 8 or 16) until few of them agree, then single
-/// rays; elsewhere many rays in flight, as [`Phased`], in small hierarchies one after the other. Of up to 85 triangles it
+/// Where neighbours are alike, packets of `R` rays (4, 8 or 16; sixteen are the fastest with registers of eight numbers,
+/// too) until few of them agree, then single rays; elsewhere many rays in flight, as [`Phased`], in small hierarchies one after the other. Of up to 85 triangles it
 /// tests all, with sixteen rays at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hybrid<const R: usize>;
@@ -197,11 +198,11 @@ where
             is_moderate: bvh.is_moderate(),
             few: 0,
         };
-        let mut hits = [Hit::miss(0.0); WINDOW];
-        for (rays, occluded) in rays.chunks(WINDOW).zip(occluded.chunks_mut(WINDOW)) {
-            let hits = &mut hits[..rays.len()];
-            kernel.window::<R>(rays, hits);
-            answer(hits, occluded);
+        for start in (0..rays.len()).step_by(WINDOW) {
+            let window = start..rays.len().min(start + WINDOW);
+            occluded.together(window.clone(), |hits| {
+                kernel.window::<R>(&rays[window], hits);
+            });
         }
     }
 }
@@ -228,7 +229,7 @@ where
             filter,
             goal: ClosestHit,
         };
-        kernel.trace::<R>(rays, |ray, hit| hits[ray] = hit);
+        kernel.trace::<R>(rays, hits);
     }
 
     #[inline(always)]
@@ -249,13 +250,6 @@ where
             filter,
             goal: AnyHit,
         };
-        kernel.trace::<R>(rays, |ray, hit| occluded[ray] = hit.is_hit());
-    }
-}
-
-#[inline(always)]
-fn answer(hits: &[Hit], occluded: &mut [bool]) {
-    for (hit, occluded) in hits.iter().zip(occluded) {
-        *occluded = hit.is_hit();
+        kernel.trace::<R>(rays, occluded);
     }
 }
