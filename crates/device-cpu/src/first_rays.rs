@@ -1,5 +1,5 @@
-//! Where a job's paths begin: tile after tile, the samples of its pixels, one after the other, in blocks of 4×4 pixels, whose camera
-//! rays stay together.
+//! Where a job's paths begin: tile after tile, blocks of 4×4 pixels, and in these all samples of a pixel before those of the
+//! next, so that rays that follow each other are as much alike as can be.
 
 use residual_render::domain::{Lanes, MAX_LANES};
 use residual_render::film::TileSamples;
@@ -12,14 +12,26 @@ use crate::stream::PathStream;
 /// Pixels along the side of a block.
 const SIDE: usize = 4;
 
+/// Column and row of a block's pixels, neighbours near each other: Morton's order.
+const PLACES: [[usize; 2]; SIDE * SIDE] = {
+    let mut places = [[0; 2]; SIDE * SIDE];
+    let mut i = 0;
+    while i < places.len() {
+        places[i] = [i & 1 | i >> 1 & 2, i >> 1 & 1 | i >> 2 & 2];
+        i += 1;
+    }
+    places
+};
+
 /// The first rays of a job's paths that are yet to be made.
 pub(crate) struct FirstRays<'j> {
     job: &'j TileJob<'j>,
     /// The tile whose turn it is, and the index of its first sample among those of the job.
     tile: usize,
     first: usize,
-    /// The next of its rays, those of blocks at its edges counted in full.
-    next: usize,
+    /// The pixel whose turn it is, those of blocks at the tile's edges counted in full, and which of its samples.
+    pixel: usize,
+    sample: usize,
 }
 
 impl<'j> FirstRays<'j> {
@@ -28,7 +40,8 @@ impl<'j> FirstRays<'j> {
             job,
             tile: 0,
             first: 0,
-            next: 0,
+            pixel: 0,
+            sample: 0,
         }
     }
 
@@ -61,44 +74,46 @@ impl<'j> FirstRays<'j> {
         let (job, rect, pass) = (self.job, tile.rect, tile.pass);
         let (width, height) = (rect.width as usize, rect.height as usize);
         let blocks = (width.div_ceil(SIDE), height.div_ceil(SIDE));
-        let places = blocks.0 * blocks.1 * SIDE * SIDE;
-        let end = places * pass.count as usize;
+        let (pixels, count) = (blocks.0 * blocks.1 * SIDE * SIDE, pass.count as usize);
         let [image_width, image_height] = job.tracer.image;
         let image = image_width * image_height;
         let mut columns = [0; MAX_LANES];
         let mut rows = [0; MAX_LANES];
+        let mut numbers = [0; MAX_LANES];
         let mut samples = [0; MAX_LANES];
-        while self.next < end && paths.has_room() {
-            // Lane counts divide the pixels of a block, so all lanes have the same sample.
-            let (sample, first) = (self.next / places, self.next % places);
+        while self.pixel < pixels && paths.has_room() {
             let mut inside = 0;
             for lane in 0..D::LANES {
-                let (block, within) = (
-                    (first + lane) / (SIDE * SIDE),
-                    (first + lane) % (SIDE * SIDE),
-                );
-                let column = block % blocks.0 * SIDE + within % SIDE;
-                let row = block / blocks.0 * SIDE + within / SIDE;
-                inside |= u32::from(column < width && row < height) << lane;
+                let block = self.pixel / PLACES.len();
+                let [x, y] = PLACES[self.pixel % PLACES.len()];
+                let column = block % blocks.0 * SIDE + x;
+                let row = block / blocks.0 * SIDE + y;
+                let is_inside = column < width && row < height && self.pixel < pixels;
+                inside |= u32::from(is_inside) << lane;
                 let place = [rect.x + column as u32, rect.y + row as u32];
                 [columns[lane], rows[lane]] = job.set.pixel(job.tracer.seed, place);
-                samples[lane] = (self.first + (sample * height + row) * width + column) as u32;
+                numbers[lane] = pass.first + self.sample as u32;
+                samples[lane] = match job.tracer.origin {
+                    PathOrigin::Camera => {
+                        self.first + (self.sample * height + row) * width + column
+                    }
+                    // To this the pixel is added that a vertex is seen in.
+                    PathOrigin::Lights => self.sample * image as usize,
+                } as u32;
+                self.sample += 1;
+                if self.sample == count {
+                    (self.pixel, self.sample) = (self.pixel + 1, 0);
+                }
             }
-            let pixel = [&columns, &rows].map(|places| d.word(&places[..D::LANES]));
-            let of_pixel = d.uint(pass.first + sample as u32);
-            let path = tracer.on_emit(d, scene.camera(), scene.lights(), pixel, of_pixel);
-            let samples = match job.tracer.origin {
-                PathOrigin::Camera => d.word(&samples[..D::LANES]),
-                // To this the pixel is added that a vertex is seen in.
-                PathOrigin::Lights => d.uint(sample as u32 * image),
-            };
+            let [columns, rows, numbers, samples] =
+                [&columns, &rows, &numbers, &samples].map(|words| d.word(&words[..D::LANES]));
+            let path = tracer.on_emit(d, scene.camera(), scene.lights(), [columns, rows], numbers);
             paths.push(d, inside, &path, samples);
-            self.next += D::LANES;
         }
-        if self.next >= end {
+        if self.pixel >= pixels {
             self.tile += 1;
             self.first += tile.count();
-            self.next = 0;
+            (self.pixel, self.sample) = (0, 0);
         }
     }
 }
