@@ -9,11 +9,11 @@ use residual_render::layer::{Layer, Layers};
 use residual_render::program::Structure;
 use residual_render::tracer::{AnySharing, DebugView, PathOrigin, TracerNode};
 use residual_scenegen::plan::{PlanOptions, plan};
-use residual_tests::{fixtures, read_scene, scenes, tiny};
+use residual_tests::{read_scene, scenes, tiny};
 use residual_wgsl::{Arithmetic, Division, Fma, SquareRoot};
 use residual_wgsl::{Kernels, Traits};
 
-use crate::subject::Subject;
+use crate::subject::{SCENES_OF_LAYERS, Subject};
 
 /// Lines of the longest function that is allowed, and where paths begin at lights, whose lobes are evaluated for both sides.
 const LONGEST: usize = 1_500;
@@ -241,14 +241,16 @@ fn kernels_of_every_tracer_and_layer() {
         TracerNode::AmbientOcclusion,
     ];
     for tracer in tracers.into_iter().chain(views) {
-        for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
-            let options = PlanOptions {
-                tracer,
-                layers,
-                ..PlanOptions::default()
-            };
-            let plan = plan(&fixtures::textures(), &options).unwrap();
-            check(&format!("{tracer:?}"), &plan.structure);
+        for name in SCENES_OF_LAYERS {
+            for layers in [Layers::NONE, Layer::ALL.into_iter().collect()] {
+                let options = PlanOptions {
+                    tracer,
+                    layers,
+                    ..PlanOptions::default()
+                };
+                let plan = plan(&tiny::named(name).scene, &options).unwrap();
+                check(&format!("{tracer:?} of {name}"), &plan.structure);
+            }
         }
     }
 }

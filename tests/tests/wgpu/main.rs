@@ -34,6 +34,14 @@ impl Machine {
         if self.gpu.adapter.is_software() { 3 } else { 1 }
     }
 
+    /// Scenes of more programs are left to other adapters: software drivers take minutes to compile theirs.
+    fn most_programs(&self) -> usize {
+        match self.gpu.adapter.is_software() {
+            true => 10,
+            false => usize::MAX,
+        }
+    }
+
     /// The mappings with which one of many scenes is rendered: both, if it is one of those that are enough.
     fn mappings(&self, index: usize) -> &'static [Mapping] {
         if index.is_multiple_of(self.step()) {

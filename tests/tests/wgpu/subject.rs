@@ -8,12 +8,40 @@ use residual_device_wgpu::{Dialect, Mapping, WgpuRenderer};
 use residual_render::film::{Film, SampleSet, TILE_SIZE};
 use residual_render::passes::{MAX_PASS, Pass, RenderOptions};
 use residual_render::tracer::{AnySharing, TracerNode};
-use residual_scenegen::desc::SceneDesc;
+use residual_scenegen::desc::{MaterialDesc, Projection, SceneDesc};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
+use residual_tests::fixtures::{Builder, color, material, matte, sheet};
 use residual_tests::pictures::first_difference;
 use residual_tests::{Look, Prepared, read_scene, scene_files, scenes};
 
 use crate::Machine;
+
+/// Tiny scenes that between them have what tracers and layers ask about: alpha and lamps, misses that see something, many
+/// programs and media. Which materials there are shows in no tracer (and `reads.rs` has scenes of many).
+pub(crate) const SCENES_OF_LAYERS: [&str; 3] = ["masked_emission", "environment", "drink"];
+
+/// A closed chamber, white but for its lamp: paths go on for long, and most of their vertices are lit and seen. There are only two
+/// programs to compile.
+pub(crate) fn chamber() -> SceneDesc {
+    let mut b = Builder::new("chamber");
+    let walls = [-1.0, 1.0].into_iter().flat_map(|at: f32| {
+        let across = -2.0 * at;
+        let [x, y, z] = [[across, 0.0, 0.0], [0.0, across, 0.0], [0.0, 0.0, across]];
+        [(x, y), (y, z), (z, x)].map(|(u, v)| sheet([at; 3], u, v))
+    });
+    b.add(material("white", matte([0.9; 3])), walls);
+    let lamp = MaterialDesc {
+        emission: color([5.0, 4.0, 3.0]),
+        ..material("lamp", matte([0.0; 3]))
+    };
+    b.add(
+        lamp,
+        [sheet([-0.3, 0.9, -0.3], [0.6, 0.0, 0.0], [0.0, 0.0, 0.6])],
+    );
+    let projection = Projection::Perspective { yfov: 1.2 };
+    b.camera("inside", [0.1, 0.2, 0.9], [0.0, 0.0, -1.0], projection);
+    b.finish()
+}
 
 /// A plan with the hierarchy that GPUs traverse.
 pub(crate) struct Subject {
