@@ -10,7 +10,7 @@ use residual_scenegen::desc::{MaterialDesc, Projection, SceneDesc};
 use residual_scenegen::plan::{Plan, PlanOptions, plan};
 use residual_tests::fixtures::{self, Builder, color, material, matte, sheet};
 use residual_tests::pictures::first_difference;
-use residual_tests::{Look, Prepared};
+use residual_tests::{Look, Prepared, tiny};
 
 const SIZE: [u32; 2] = [32, 24];
 
@@ -222,15 +222,14 @@ fn the_heat_map_is_of_the_visits_of_camera_rays() {
 
 /// Compiled and interpreted renderers give the same bits with every tracer, layers included, and also with `others`
 /// lanes, which have hierarchies of other widths.
-fn check(tracer: TracerNode, layers: Layers, others: &[LaneCount]) {
-    let scene = fixtures::textures();
+fn check(scene: &SceneDesc, tracer: TracerNode, layers: Layers, others: &[LaneCount]) {
     let options = PlanOptions {
         size: SIZE,
         tracer,
         layers,
         ..PlanOptions::default()
     };
-    let plan = plan(&scene, &options).unwrap();
+    let plan = plan(scene, &options).unwrap();
     let look = Look {
         reach: 2.0,
         ..Look::new(SIZE, 4)
@@ -263,9 +262,15 @@ fn check(tracer: TracerNode, layers: Layers, others: &[LaneCount]) {
     }
 }
 
+/// What is compiled of a tracer that asks little of materials, or shares what it asks with another tracer: alpha, coordinates, light.
+fn lamp_with_holes() -> SceneDesc {
+    tiny::named("masked_emission").scene
+}
+
 #[test]
 fn path_tracer_with_layers() {
     check(
+        &fixtures::textures(),
         TracerNode::default(),
         Layer::ALL.into_iter().collect(),
         &LaneCount::ALL,
@@ -275,6 +280,7 @@ fn path_tracer_with_layers() {
 #[test]
 fn ambient_occlusion() {
     check(
+        &lamp_with_holes(),
         TracerNode::AmbientOcclusion,
         Layers::NONE.with(Layer::Normal),
         &LaneCount::ALL,
@@ -284,6 +290,7 @@ fn ambient_occlusion() {
 #[test]
 fn paths_from_both_ends() {
     check(
+        &fixtures::textures(),
         TracerNode::Bidirectional(AnySharing::Combined),
         Layers::NONE.with(Layer::Normal),
         &[LaneCount::Four],
@@ -293,6 +300,7 @@ fn paths_from_both_ends() {
 #[test]
 fn paths_from_lights() {
     check(
+        &lamp_with_holes(),
         TracerNode::Bidirectional(AnySharing::LightPathsOnly),
         Layers::NONE,
         &[],
@@ -307,6 +315,7 @@ fn debug_views() {
         (DebugView::TraversalCost, &[]),
     ];
     for (view, others) in views {
-        check(TracerNode::Debug(view), Layers::NONE, others);
+        let tracer = TracerNode::Debug(view);
+        check(&lamp_with_holes(), tracer, Layers::NONE, others);
     }
 }

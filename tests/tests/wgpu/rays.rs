@@ -8,7 +8,7 @@ use residual_wgsl::Arithmetic;
 use crate::meshes::{Mesh, Random, aimed, grid, jittered_sphere};
 use crate::{Machine, exact_machine, machine};
 
-/// Rays for each mesh: some at every edge, where a software driver takes long.
+/// Rays for each mesh: a few for each of its edges where a software driver traces them.
 fn ray_count(machine: &Machine) -> usize {
     match machine.gpu.adapter.is_software() {
         true => 20_000,
