@@ -2,13 +2,14 @@
 //!
 //! Cargo and Python check formatting, lints, documentation and generated files. The rest is checked here: which crate may
 //! depend on which ([`crates`]), that files of a crate do not depend on each other in a circle ([`files`]), how long they are
-//! ([`sizes`]), and where unsafe code may be ([`unsafe_code`]). Every check answers with [`problem::Problem`]s.
+//! ([`sizes`]), where unsafe code may be ([`unsafe_code`]), and that no test is where cargo runs none ([`idle_tests`]). Every check answers with [`problem::Problem`]s.
 
 mod command;
 pub mod crates;
 mod external;
 mod figures;
 pub mod files;
+pub mod idle_tests;
 pub mod problem;
 pub mod sizes;
 mod sources;

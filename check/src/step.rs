@@ -5,7 +5,7 @@ use clap::ValueEnum;
 
 use crate::problem::Problem;
 use crate::workspace::Workspace;
-use crate::{crates, external, files, sizes, unsafe_code};
+use crate::{crates, external, files, idle_tests, sizes, unsafe_code};
 
 /// A check. Those that take long come last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -18,6 +18,8 @@ pub(crate) enum Step {
     Sizes,
     /// Unsafe code is where it may be
     Unsafe,
+    /// No test is where cargo runs none
+    Tests,
     /// scenes/generate.py writes what is there
     Freshness,
     /// cargo fmt changes nothing
@@ -48,6 +50,7 @@ impl Step {
             Self::Files => files::problems(workspace),
             Self::Sizes => sizes::problems(workspace),
             Self::Unsafe => unsafe_code::problems(workspace),
+            Self::Tests => idle_tests::problems(workspace),
             Self::Freshness => external::freshness(&workspace.root),
             Self::Format => external::format(&workspace.root),
             Self::Lints => external::lints(&workspace.root),

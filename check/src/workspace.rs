@@ -35,6 +35,8 @@ pub struct Target {
     pub kind: String,
     /// Its first file.
     pub source: PathBuf,
+    /// Whether cargo runs the tests in it.
+    pub is_tested: bool,
 }
 
 impl Target {
@@ -121,6 +123,9 @@ fn target(value: &Value) -> Result<Target> {
     Ok(Target {
         kind: kind.context("a target has a kind")?.to_owned(),
         source: text(value, "src_path")?.into(),
+        is_tested: value["test"]
+            .as_bool()
+            .context("a target is tested or not")?,
     })
 }
 

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use residual_check::crates::{self, Row};
+use residual_check::idle_tests;
 use residual_check::problem::Problem;
 use residual_check::sizes::{self, MOST_LINES, REASON};
 use residual_check::unsafe_code;
-use residual_check::workspace::{Package, Workspace};
+use residual_check::workspace::{Package, Target, Workspace};
 
 /// What the problems are, without what to do.
 fn what(problems: &[Problem]) -> Vec<&str> {
@@ -137,4 +138,45 @@ fn the_workspace_is_what_cargo_says() {
     let mut kinds: Vec<_> = own.targets.iter().map(|target| &*target.kind).collect();
     kinds.sort_unstable();
     assert_eq!(kinds, ["bin", "lib", "test", "test"]);
+}
+
+#[test]
+fn tests_that_cargo_does_not_run_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let test = "fn f() {}\n#[test]\nfn t() {}\n";
+    for (file, text) in [
+        ("src/lib.rs", "mod a;"),
+        ("src/a.rs", test),
+        ("src/main.rs", test),
+        ("tests/t.rs", test),
+    ] {
+        let path = folder.path().join(file);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    let places = |library: bool, program: bool| {
+        let targets = [
+            ("lib", "src/lib.rs", library),
+            ("bin", "src/main.rs", program),
+            ("test", "tests/t.rs", true),
+        ];
+        let mut workspace = workspace(&[("p", &[])]);
+        workspace.root = folder.path().to_owned();
+        workspace.packages[0].directory = folder.path().to_owned();
+        workspace.packages[0].targets = targets
+            .map(|(kind, source, is_tested)| Target {
+                kind: kind.to_owned(),
+                source: folder.path().join(source),
+                is_tested,
+            })
+            .into();
+        let found = idle_tests::problems(&workspace).unwrap();
+        let places = found.iter().map(|problem| problem.place.as_ref());
+        places
+            .map(|place| place.unwrap().to_string())
+            .collect::<Vec<_>>()
+    };
+    assert!(places(true, true).is_empty());
+    assert_eq!(places(true, false), ["src/main.rs:2"]);
+    assert_eq!(places(false, false), ["src/a.rs:2", "src/main.rs:2"]);
 }

@@ -1,7 +1,7 @@
 //! What is built around emitted code is linked with the crates that the command line was built with. Cargo builds a crate
 //! again where other features are asked for, of itself or of anything below it: minutes, before the first scene is compiled.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use residual_driver::cargo;
 
@@ -51,5 +51,25 @@ fn tests_have_nothing_built_again_behind_the_command_line() {
         // These have a feature of their own for the GPU device.
         .filter(|crate_| !crate_.starts_with("xtask ") && !crate_.starts_with("residual-driver "))
         .collect();
+    assert!(again.is_empty(), "{again:#?}");
+}
+
+/// Examples have build scripts that make renderers: with other features below scenegen, cargo would build it for them again.
+#[test]
+fn build_scripts_share_what_the_workspace_builds() {
+    let mut features = BTreeMap::<String, BTreeSet<String>>::new();
+    for line in tree(&["--workspace", "--edges", "normal,build,dev"]) {
+        let (package, of_package) = line.split_once(" with features").unwrap();
+        let all = features.entry(package.to_owned()).or_default();
+        all.insert(of_package.to_owned());
+    }
+    // The compiler's own macros need other parts of these than programs that read Rust.
+    let again = features.iter().filter(|(package, of_package)| {
+        of_package.len() > 1
+            && !["syn ", "proc-macro2 "]
+                .iter()
+                .any(|of| package.starts_with(of))
+    });
+    let again: Vec<_> = again.collect();
     assert!(again.is_empty(), "{again:#?}");
 }
