@@ -74,7 +74,11 @@ impl<'j> FirstRays<'j> {
         let (job, rect, pass) = (self.job, tile.rect, tile.pass);
         let (width, height) = (rect.width as usize, rect.height as usize);
         let blocks = (width.div_ceil(SIDE), height.div_ceil(SIDE));
-        let (pixels, count) = (blocks.0 * blocks.1 * SIDE * SIDE, pass.count as usize);
+        let count = pass.count as usize;
+        let pixels = match count {
+            0 => 0,
+            _ => blocks.0 * blocks.1 * SIDE * SIDE,
+        };
         let [image_width, image_height] = job.tracer.image;
         let image = image_width * image_height;
         let mut columns = [0; MAX_LANES];

@@ -48,10 +48,10 @@ pub fn build(plan: &Plan, options: &StandaloneOptions) -> Result<Standalone> {
     let data = plan.data.to_bytes();
     let data_file = keep_for_now(&data)?;
     let source = source(plan, &options.size, &lanes_name(lanes), data_file.path());
-    let flags = options
-        .target_cpu
-        .as_ref()
-        .map(|cpu| format!("-Ctarget-cpu={cpu}"));
+    // As .cargo/config.toml, which these stand in for.
+    let flags = options.target_cpu.as_ref().map(|cpu| {
+        format!("-Ctarget-cpu={cpu} -Cllvm-args=-enable-noalias-to-md-conversion=false")
+    });
     let target_directory = match &options.target_cpu {
         Some(cpu) => workspace::own_directory().join("targets").join(cpu),
         None => workspace::target_directory(),
