@@ -43,7 +43,7 @@ fn is_idle(package: &Package, file: &Path) -> bool {
 }
 
 /// Tests of a file, in which there may be none.
-pub fn in_file(file: &Path, text: &str) -> Vec<Problem> {
+fn in_file(file: &Path, text: &str) -> Vec<Problem> {
     let lines = text.lines().enumerate();
     let tests = lines.filter(|(_, line)| line.trim() == "#[test]");
     let problem = |(index, _)| {

@@ -2,7 +2,8 @@
 //!
 //! Cargo and Python check formatting, lints, documentation and generated files. The rest is checked here: which crate may
 //! depend on which ([`crates`]), that files of a crate do not depend on each other in a circle ([`files`]), how long they are
-//! ([`sizes`]), where unsafe code may be ([`unsafe_code`]), and that no test is where cargo runs none ([`idle_tests`]). Every check answers with [`problem::Problem`]s.
+//! ([`sizes`]), where unsafe code may be ([`unsafe_code`]), and that no test is where cargo runs none ([`idle_tests`]). Every
+//! check answers with [`problem::Problem`]s.
 
 mod command;
 pub mod crates;

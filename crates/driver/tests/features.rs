@@ -10,6 +10,11 @@ fn built_from(package: &str) -> BTreeSet<String> {
     tree(&["--package", package, "--edges", "normal,build"])
 }
 
+/// All that the workspace with its tests is built from.
+fn of_workspace() -> BTreeSet<String> {
+    tree(&["--workspace", "--edges", "normal,build,dev"])
+}
+
 /// What cargo resolves for what the arguments choose.
 fn tree(arguments: &[&str]) -> BTreeSet<String> {
     let output = cargo::command()
@@ -40,12 +45,12 @@ fn what_is_built_around_emitted_code_has_nothing_else_built_again() {
     }
 }
 
-/// Tests follow on the command line's build. What asks for other features then is to be asked for by bvh or frontend, too: their
-/// Cargo.toml have lists.
+/// Tests follow on the command line's build. What asks for other features then is to be asked for by bvh, frontend or scenegen, too:
+/// their Cargo.toml have lists.
 #[test]
 fn tests_have_nothing_built_again_behind_the_command_line() {
     let program = built_from("xtask");
-    let tests = tree(&["--workspace", "--edges", "normal,build,dev"]);
+    let tests = of_workspace();
     let again: Vec<_> = program
         .difference(&tests)
         // These have a feature of their own for the GPU device.
@@ -58,7 +63,7 @@ fn tests_have_nothing_built_again_behind_the_command_line() {
 #[test]
 fn build_scripts_share_what_the_workspace_builds() {
     let mut features = BTreeMap::<String, BTreeSet<String>>::new();
-    for line in tree(&["--workspace", "--edges", "normal,build,dev"]) {
+    for line in of_workspace() {
         // Between members there are blank lines.
         if let Some((package, of_package)) = line.split_once(" with features") {
             let all = features.entry(package.to_owned()).or_default();

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use crate::ray::Hit;
-use crate::trace::window::WINDOW;
+
+/// Most rays that are answered together: so many are sorted into packets.
+pub(crate) const WINDOW: usize = 256;
 
 /// An answer for each ray of a stream, made of its hit.
 pub(crate) trait Answers {

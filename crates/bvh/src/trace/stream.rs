@@ -13,7 +13,6 @@ use crate::trace::hybrid::HybridKernel;
 use crate::trace::packet::PacketKernel;
 use crate::trace::phased::PhasedKernel;
 use crate::trace::single::{any_hit, closest_hit};
-use crate::trace::window::WINDOW;
 
 /// How a stream of rays is traced. The answers are the same.
 pub trait Kernel<S, const N: usize, const P: usize>: Copy {
@@ -124,7 +123,7 @@ where
             filter,
             goal: ClosestHit,
         };
-        kernel.trace(rays, |ray, hit| hits[ray] = hit);
+        kernel.trace(rays, |ray, hit| hits.one(ray, hit));
     }
 
     #[inline(always)]
@@ -145,7 +144,7 @@ where
             filter,
             goal: AnyHit,
         };
-        kernel.trace(rays, |ray, hit| occluded[ray] = hit.is_hit());
+        kernel.trace(rays, |ray, hit| occluded.one(ray, hit));
     }
 }
 
@@ -173,9 +172,7 @@ where
             is_moderate: bvh.is_moderate(),
             few: 0,
         };
-        for (rays, hits) in rays.chunks(WINDOW).zip(hits.chunks_mut(WINDOW)) {
-            kernel.window::<R>(rays, hits);
-        }
+        kernel.windows::<R>(rays, hits);
     }
 
     #[inline(always)]
@@ -198,12 +195,7 @@ where
             is_moderate: bvh.is_moderate(),
             few: 0,
         };
-        for start in (0..rays.len()).step_by(WINDOW) {
-            let window = start..rays.len().min(start + WINDOW);
-            occluded.together(window.clone(), |hits| {
-                kernel.window::<R>(&rays[window], hits);
-            });
-        }
+        kernel.windows::<R>(rays, occluded);
     }
 }
 

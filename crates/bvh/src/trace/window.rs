@@ -10,12 +10,10 @@ use crate::layout::packet::Packet;
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
+use crate::trace::answers::{Answers, WINDOW};
 use crate::trace::counting_sort::Sorted;
 use crate::trace::goal::Goal;
 use crate::trace::packet::PacketKernel;
-
-/// Rays that are sorted into packets together.
-pub(crate) const WINDOW: usize = 256;
 
 /// The indices of rays that are in order as they are.
 const IN_ORDER: [u16; 32] = {
@@ -56,10 +54,16 @@ pub(crate) enum Run {
     Incoherent(Range<usize>),
 }
 
+/// The window that starts at a ray.
+#[inline(always)]
+fn window(rays: &[Ray], start: usize) -> Range<usize> {
+    start..rays.len().min(start + WINDOW)
+}
+
 /// The runs of a stream, in their order.
 #[inline(always)]
 pub(crate) fn runs(rays: &[Ray]) -> impl Iterator<Item = Run> {
-    let window = |start: usize| start..rays.len().min(start + WINDOW);
+    let window = move |start: usize| window(rays, start);
     let is_incoherent =
         move |start: usize| start < rays.len() && !is_coherent(&rays[window(start)]);
     let mut next = 0;
@@ -84,9 +88,28 @@ where
     T: Packet<P>,
     G: Goal,
 {
+    /// Traces any number of rays, a window after the other.
+    #[inline(always)]
+    pub(crate) fn windows<const R: usize>(
+        &self,
+        rays: &[Ray],
+        answers: &mut (impl Answers + ?Sized),
+    ) where
+        S: Width<N> + Width<P> + Width<R>,
+    {
+        for start in (0..rays.len()).step_by(WINDOW) {
+            let window = window(rays, start);
+            answers.together(
+                window.clone(),
+                #[inline(always)]
+                |hits| self.window::<R>(&rays[window], hits),
+            );
+        }
+    }
+
     /// Traces at most [`WINDOW`] rays.
     #[inline(always)]
-    pub(crate) fn window<const R: usize>(&self, rays: &[Ray], hits: &mut [Hit])
+    fn window<const R: usize>(&self, rays: &[Ray], hits: &mut [Hit])
     where
         S: Width<N> + Width<P> + Width<R>,
     {
