@@ -30,8 +30,8 @@ pub const TABLE: &[Row] = &[
     row("residual-scenegen", &["residual-render"]),
     row("residual-device-cpu", &["residual-bvh", "residual-render"]),
     row(
-        "residual-any-lanes",
-        &["residual-device-cpu", "residual-render"],
+        "residual-variants",
+        &["residual-bvh", "residual-device-cpu", "residual-render"],
     ),
     row(
         "residual-device-wgpu",
@@ -65,7 +65,7 @@ pub const TABLE: &[Row] = &[
     row(
         "residual-benches",
         &[
-            "residual-any-lanes",
+            "residual-variants",
             "residual-bvh",
             "residual-device-cpu",
             "residual-driver",
@@ -79,7 +79,7 @@ pub const TABLE: &[Row] = &[
     row(
         "residual-study",
         &[
-            "residual-any-lanes",
+            "residual-variants",
             "residual-bvh",
             "residual-device-cpu",
             "residual-driver",
@@ -108,7 +108,7 @@ pub const TABLE: &[Row] = &[
     row(
         "residual-tests",
         &[
-            "residual-any-lanes",
+            "residual-variants",
             "residual-bvh",
             "residual-device-cpu",
             "residual-device-wgpu",

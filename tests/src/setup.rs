@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use residual_any_lanes::AnyLanes;
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{
     AnyBvh, CpuDevice, LaneCount, SceneView, TileRenderer, Traversal, Width,
@@ -13,6 +12,7 @@ use residual_render::passes::RenderOptions;
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::import::{EnvironmentOptions, ImportError, ImportOptions, import};
 use residual_scenegen::plan::Plan;
+use residual_variants::AnyLanes;
 
 /// Reads a scene file, under an environment image where one is given.
 ///

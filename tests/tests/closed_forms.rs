@@ -2,7 +2,6 @@
 
 use std::ops::ControlFlow;
 
-use residual_any_lanes::AnyLanes;
 use residual_bvh::BuildQuality;
 use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, Width};
 use residual_render::alias_table::AliasEntry;
@@ -21,6 +20,7 @@ use residual_render::surface::Attributes;
 use residual_render::texture::Input;
 use residual_render::tracer::{Between, TracerNode};
 use residual_render::triangle::TriangleRecord;
+use residual_variants::AnyLanes;
 
 type Triangle = [[f32; 3]; 3];
 

@@ -7,6 +7,7 @@ use residual_device_cpu::{CpuDevice, LaneCount, Width};
 use residual_driver::poses::Poses;
 use residual_driver::tiers::{Ledger, Tiers};
 use residual_frontend::note;
+use residual_frontend::options::EvenOnly;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{DeviceReport, Preparation, Statistics};
 
@@ -16,10 +17,8 @@ use crate::scene;
 use crate::time::Exposure;
 
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
-    ensure!(
-        !(args.render.adaptive && args.scene.tracer().has_light_paths()),
-        "--adaptive: paths from lights add to any pixel, so that no pixel can have more of them; render with --tracer path"
-    );
+    let even_only = EvenOnly::of_processor(args.scene.tracer().has_light_paths());
+    let sampling = args.render.sampling(even_only)?;
     let session = Session::new(
         &args.render,
         args.scene.scene.file_stem().unwrap_or_default(),
@@ -30,7 +29,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let device = CpuDevice::new(args.render.threads).context("starting threads")?;
     let options = args
         .render
-        .render_options(args.scene.size.0, scene::defaults(&plan));
+        .render_options(args.scene.size.0, scene::defaults(&plan), sampling);
     let tier = match args.scene.specialize {
         SpecializeArg::None => TierArg::Interpreted,
         SpecializeArg::Structure | SpecializeArg::Constants => args.tier,

@@ -7,6 +7,7 @@ use residual_device_cpu::{CpuDevice, LaneCount, Width};
 use residual_device_wgpu::{Arithmetic, Dialect, Gpu, Mapping, Mode, Question, list_adapters};
 use residual_driver::gpu::{GpuDriver, GpuPasses, arithmetic};
 use residual_driver::poses::Poses;
+use residual_frontend::options::EvenOnly;
 use residual_frontend::session::Session;
 use residual_frontend::stats::{DeviceReport, Preparation, Statistics, TierReport};
 use residual_frontend::{note, out};
@@ -22,10 +23,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
         args.tier != TierArg::Interpreted,
         "--tier interpreted: a GPU runs what is made for the scene; render with --device cpu"
     );
-    ensure!(
-        !args.render.adaptive,
-        "--adaptive: a GPU takes as many samples of every pixel; render with --device cpu"
-    );
+    let sampling = args.render.sampling(Some(EvenOnly::Gpu))?;
     let session = Session::new(
         &args.render,
         args.scene.scene.file_stem().unwrap_or_default(),
@@ -50,7 +48,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let cpu = CpuDevice::new(args.render.threads).context("starting threads")?;
     let options = args
         .render
-        .render_options(args.scene.size.0, scene::defaults(&plan));
+        .render_options(args.scene.size.0, scene::defaults(&plan), sampling);
     let poses = Poses::new(&plan, Width::Four, options.seed);
     poses.hierarchy(0);
     let mapping = match args.mapping {

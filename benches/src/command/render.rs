@@ -7,7 +7,6 @@ use crate::isa::Isa;
 use crate::mesh::Mesh;
 use crate::render::{RenderContender, RenderRow, render_table, renders};
 use anyhow::{Context, Result};
-use residual_any_lanes::AnyLanes;
 use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, Traversal, Width};
 use residual_driver::compile;
@@ -15,6 +14,7 @@ use residual_frontend::hierarchy_quality;
 use residual_render::passes::RenderOptions;
 use residual_scenegen::import::{ImportOptions, import};
 use residual_scenegen::plan::{Binding, CameraChoice, CullingRule, Plan, PlanOptions, plan};
+use residual_variants::AnyLanes;
 
 use super::args::RenderBenchArgs;
 use super::scenes::scenes_or_own;

@@ -15,7 +15,6 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use residual_accuracy::Estimate;
-use residual_any_lanes::AnyLanes;
 use residual_device_cpu::{LaneCount, SceneView, TileJob, TileRenderer};
 use residual_render::film::{Pass, SampleSet, TileRect, TileSamples};
 use residual_render::layer::Layers;
@@ -24,6 +23,7 @@ use residual_render::sampler::AnySampler;
 use residual_render::scene_data::SceneData;
 use residual_render::tracer::{Between, PathOrigin, TracerNode, TracerOptions};
 use residual_scenegen::plan::{Binding, LightKindUse, LightPicks, MaterialUse, Plan};
+use residual_variants::AnyLanes;
 use serde_json::{Value, json};
 
 use self::interfaces::{CasesRenderer, Known};

@@ -30,6 +30,20 @@ pub trait Traversal {
     }
 }
 
+impl<T: Traversal + ?Sized> Traversal for &T {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit], alpha: Option<&AlphaFilter<'_>>) {
+        (**self).closest_hits(rays, hits, alpha);
+    }
+
+    fn any_hits(&self, rays: &[Ray], occluded: &mut [bool], alpha: Option<&AlphaFilter<'_>>) {
+        (**self).any_hits(rays, occluded, alpha);
+    }
+
+    fn visits(&self, rays: &[Ray], visits: &mut [u32], alpha: Option<&AlphaFilter<'_>>) {
+        (**self).visits(rays, visits, alpha);
+    }
+}
+
 /// How many children a hierarchy's nodes have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {

@@ -1,9 +1,11 @@
 //! Options of a render, as arguments.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
+use anyhow::{Result, bail};
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use residual_render::film::Sampling;
@@ -35,9 +37,10 @@ pub struct RenderArgs {
     /// Stop when the relative error is below this (1%, 0.01) with 97.5 % confidence; the first of --spp, --time and --error ends
     #[arg(long, value_name = "ERROR", value_parser = relative_error)]
     pub error: Option<f64>,
-    /// Spend more samples where the image is noisy and fewer where it is not; the average is --spp
-    #[arg(long)]
-    pub adaptive: bool,
+    /// Spend more samples where the image is noisy and fewer where it is not; the average is --spp [default: true on the processor
+    /// where --time or --error ends a render of paths from the camera]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    pub adaptive: Option<bool>,
     /// Most vertices of a path: 1 is emission seen directly, 2 adds direct light [default: 8, or 256 where bodies scatter]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub max_depth: Option<u32>,
@@ -71,23 +74,70 @@ impl RenderArgs {
         }
     }
 
+    /// Whether the user leaves open how many samples there are.
+    fn has_budget(&self) -> bool {
+        self.time.is_some() || self.error.is_some()
+    }
+
+    /// How samples are spread: as the user says, or else by noise where that is possible and the sooner image is what was asked for.
+    ///
+    /// # Errors
+    /// If the user asks for what is not possible.
+    pub fn sampling(&self, even_only: Option<EvenOnly>) -> Result<Sampling> {
+        let adaptive = match (self.adaptive, even_only) {
+            (Some(true), Some(reason)) => bail!("--adaptive: {reason}"),
+            (Some(adaptive), _) => adaptive,
+            (None, reason) => reason.is_none() && self.has_budget(),
+        };
+        Ok(match adaptive {
+            true => Sampling::Adaptive,
+            false => Sampling::Uniform,
+        })
+    }
+
     /// What the device is told.
-    pub fn render_options(&self, size: [u32; 2], scene: SceneDefaults) -> RenderOptions {
-        let is_endless = self.time.is_none() && self.error.is_none();
+    pub fn render_options(
+        &self,
+        size: [u32; 2],
+        scene: SceneDefaults,
+        sampling: Sampling,
+    ) -> RenderOptions {
         RenderOptions {
             size,
-            samples: self.spp.or(is_endless.then_some(DEFAULT_SAMPLES)),
+            samples: self.spp.or((!self.has_budget()).then_some(DEFAULT_SAMPLES)),
             time: self.time,
             error: self.error,
-            sampling: match self.adaptive {
-                true => Sampling::Adaptive,
-                false => Sampling::Uniform,
-            },
+            sampling,
             max_depth: self.max_depth.unwrap_or(scene.max_depth),
             roulette_from: self.roulette,
             seed: self.seed,
             reach: self.reach.unwrap_or(scene.reach),
         }
+    }
+}
+
+/// Why no part of an image can have more samples than another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EvenOnly {
+    /// Any path may add to any pixel.
+    LightPaths,
+    /// The device takes all pixels alike.
+    Gpu,
+}
+
+impl EvenOnly {
+    /// Of the processor, which renders with this kind of tracer.
+    pub fn of_processor(has_light_paths: bool) -> Option<Self> {
+        has_light_paths.then_some(Self::LightPaths)
+    }
+}
+
+impl fmt::Display for EvenOnly {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::LightPaths => "paths from lights add to any pixel, so that no pixel can have more of them; render with --tracer path",
+            Self::Gpu => "a GPU takes as many samples of every pixel; render with --device cpu",
+        })
     }
 }
 
@@ -194,5 +244,49 @@ mod tests {
             assert!(relative_error(wrong).is_err(), "{wrong}");
         }
         assert!(duration("-1s").is_err() && duration("soon").is_err());
+    }
+
+    /// What a render is told by these arguments, or what is wrong with them.
+    fn sampling(args: &[&str], even_only: Option<EvenOnly>) -> Result<Sampling, String> {
+        #[derive(clap::Parser)]
+        struct Command {
+            #[command(flatten)]
+            render: RenderArgs,
+        }
+        let args = ["render"].iter().chain(args);
+        let command = <Command as clap::Parser>::try_parse_from(args).map_err(|e| e.to_string())?;
+        command
+            .render
+            .sampling(even_only)
+            .map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn samples_follow_noise_where_a_limit_is_all_that_is_asked_for() {
+        let (adaptive, uniform) = (Sampling::Adaptive, Sampling::Uniform);
+        // Where it can be done, and where it cannot: `None` is a refusal.
+        for (args, possible, impossible) in [
+            (&[][..], uniform, Some(uniform)),
+            (&["--spp", "16"], uniform, Some(uniform)),
+            (&["--error", "1%"], adaptive, Some(uniform)),
+            (&["--time", "1s", "--spp", "16"], adaptive, Some(uniform)),
+            (
+                &["--error", "1%", "--adaptive=false"],
+                uniform,
+                Some(uniform),
+            ),
+            (&["--adaptive=true"], adaptive, None),
+            (&["--adaptive"], adaptive, None),
+        ] {
+            assert_eq!(sampling(args, None), Ok(possible), "{args:?}");
+            for reason in [EvenOnly::LightPaths, EvenOnly::Gpu] {
+                let answer = sampling(args, Some(reason));
+                assert_eq!(answer.as_ref().ok(), impossible.as_ref(), "{answer:?}");
+                if let Err(error) = answer {
+                    assert!(error.contains("; render with "), "{error}");
+                }
+            }
+        }
+        assert!(sampling(&["--adaptive=often"], None).is_err());
     }
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use residual_accuracy::{Convergence, Measured};
-use residual_render::film::{Film, TILE_SIZE};
+use residual_render::film::{Film, Sampling, TILE_SIZE};
 use residual_render::layer::Layers;
 use residual_render::passes::{Counters, Pass, Progress, RenderOptions, render_passes};
 
@@ -188,8 +188,12 @@ impl<'a> Session<'a> {
             .map(|path| path.display().to_string())
             .collect();
         let seconds = statistics.rendered.report.elapsed.as_secs_f64();
+        let spread = match film.sampling() {
+            Sampling::Uniform => "",
+            Sampling::Adaptive => " on average, more where it is noisy,",
+        };
         note!(
-            "{}: {} samples per pixel in {seconds:.2} s",
+            "{}: {} samples per pixel{spread} in {seconds:.2} s",
             files.join(", "),
             film.samples()
         );

@@ -201,6 +201,7 @@ impl Statistics<'_> {
             "width": film.width(),
             "height": film.height(),
             "spp": film.samples(),
+            "sampling": film.sampling().to_string(),
             "triangles": self.scene.triangles,
             "seconds": {
                 "load": preparation.load.as_secs_f64(),

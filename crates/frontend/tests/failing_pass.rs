@@ -6,7 +6,7 @@ use anyhow::bail;
 use residual_frontend::display::ToneMap;
 use residual_frontend::options::{RenderArgs, SceneDefaults};
 use residual_frontend::session::{Session, Subject};
-use residual_render::film::Film;
+use residual_render::film::{Film, Sampling};
 use residual_render::layer::Layers;
 use residual_render::passes::{Counters, Pass};
 
@@ -23,7 +23,7 @@ fn what_there_was_before_is_written_and_the_failure_told() {
         spp: Some(8),
         time: None,
         error: None,
-        adaptive: false,
+        adaptive: None,
         max_depth: Some(8),
         roulette: 5,
         seed: 0,
@@ -39,6 +39,7 @@ fn what_there_was_before_is_written_and_the_failure_told() {
             max_depth: 8,
             reach: 1.0,
         },
+        Sampling::Uniform,
     );
     let pass = |film: &mut Film, pass: Pass| {
         if pass.first > 0 {

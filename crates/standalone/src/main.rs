@@ -10,7 +10,7 @@ use clap::Parser;
 use residual_device_cpu::{AnyBvh, CpuDevice, LaneCount, SceneView, TileRenderer, Width};
 use residual_frontend::cryptomatte::Manifest;
 use residual_frontend::hierarchy_quality;
-use residual_frontend::options::{RenderArgs, SceneDefaults, Size};
+use residual_frontend::options::{EvenOnly, RenderArgs, SceneDefaults, Size};
 use residual_frontend::session::{Session, Subject};
 use residual_frontend::stats::{DeviceReport, Preparation, SceneSummary, Statistics, TierReport};
 use residual_render::camera::set_aspect;
@@ -75,6 +75,8 @@ fn main() -> ExitCode {
 }
 
 fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
+    let even_only = EvenOnly::of_processor(scene.renderer.has_light_paths());
+    let sampling = args.render.sampling(even_only)?;
     let session = Session::new(
         &args.render,
         OsStr::new(scene.name),
@@ -99,7 +101,7 @@ fn run(scene: &StandaloneScene, args: &Args) -> Result<()> {
         buffers: data.buffers(),
         traversal: &bvh,
     };
-    let options = args.render.render_options(size, scene.defaults);
+    let options = args.render.render_options(size, scene.defaults, sampling);
     let manifests = scene.manifests.iter();
     let manifests = manifests.map(|&(layer, names)| Manifest {
         layer: layer.parse().expect("a layer"),

@@ -3,13 +3,13 @@
 //! A row of [`CONFIGURATIONS`] is all that it takes to measure another one. [`SWITCHES`] says which pairs of them are the two sides of
 //! a choice between time and truth.
 
-use residual_bvh::{Exact, Fast, Watertight};
-use residual_device_cpu::{AnyBvh, LaneCount, Traversal};
+use residual_device_cpu::LaneCount;
 use residual_render::film::Sampling;
 use residual_render::passes::RenderOptions;
 use residual_render::sampler::AnySampler;
 use residual_render::tracer::{AnyMis, TracerNode};
 use residual_scenegen::plan::{Binding, LightPicks, PlanOptions};
+use residual_variants::TraversalPrecision;
 
 /// All that a configuration may change.
 #[derive(Clone, Debug)]
@@ -37,28 +37,6 @@ impl Setup {
     /// Whether it renders the same in the same way.
     pub fn is_as(&self, other: &Self) -> bool {
         format!("{self:?}") == format!("{other:?}")
-    }
-}
-
-/// The tests of triangles that `residual_bvh` has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TraversalPrecision {
-    /// Plain Möller and Trumbore in `f32`.
-    Fast,
-    /// Edges belong to both triangles.
-    Watertight,
-    /// Decisions as in exact arithmetic.
-    Exact,
-}
-
-impl TraversalPrecision {
-    /// Traces rays through a hierarchy with it.
-    pub fn of<'a>(self, bvh: &'a AnyBvh) -> Box<dyn Traversal + Sync + 'a> {
-        match self {
-            Self::Fast => Box::new(bvh.with_precision(Fast)),
-            Self::Watertight => Box::new(bvh.with_precision(Watertight)),
-            Self::Exact => Box::new(bvh.with_precision(Exact)),
-        }
     }
 }
 

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 use residual_accuracy::luminance;
-use residual_any_lanes::AnyLanes;
 use residual_device_cpu::plugin::LoadedRenderer;
 use residual_device_cpu::{AnyBvh, CpuDevice, SceneView, TileJob, TileRenderer, Width};
 use residual_driver::compile;
@@ -15,8 +14,10 @@ use residual_render::layer::Layers;
 use residual_render::passes::{Counters, Pass, RenderOptions};
 use residual_scenegen::desc::SceneDesc;
 use residual_scenegen::plan::{Plan, plan};
+use residual_variants::AnyLanes;
 
-use crate::configuration::{Setup, Tier, TraversalPrecision};
+use crate::configuration::{Setup, Tier};
+use residual_variants::TraversalPrecision;
 
 /// A scene in one configuration, ready to be rendered.
 pub struct Prepared {

@@ -94,6 +94,13 @@ fn samples_are_spent_where_the_noise_is() {
     let even = statistics(&good(render(&folder, &args(&[]))));
     let [a, b] = [&once, &even].map(|json| json["mean"][1].as_f64().unwrap());
     assert!(a != b && (a / b - 1.0).abs() < 0.02, "{a} {b}");
+    // Where the error is what was asked for, samples follow it.
+    let [until, evenly] = [
+        &["--error", "50%"][..],
+        &["--error=50%", "--adaptive=false"],
+    ]
+    .map(|more| statistics(&good(render(&folder, &args(more))))["sampling"].clone());
+    assert_eq!([until, evenly], ["adaptive", "uniform"]);
 }
 
 #[test]

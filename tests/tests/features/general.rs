@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use residual_any_lanes::AnyLanes;
 use residual_device_cpu::LaneCount;
 use residual_render::domain::Buffer;
 use residual_render::light::EnvironmentHeader;
@@ -15,6 +14,7 @@ use residual_scenegen::plan::{LightKindUse, MaterialUse, Plan};
 use residual_tests::pictures::first_difference;
 use residual_tests::tiny::{self, SIZE};
 use residual_tests::{Look, Prepared};
+use residual_variants::AnyLanes;
 
 /// What a renderer of a plan shows of a scene's data.
 fn picture(plan: &Plan, structure: &Structure) -> Vec<[f32; 3]> {

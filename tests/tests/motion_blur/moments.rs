@@ -1,6 +1,5 @@
 //! An open shutter shows the mean of its moments, sample by sample and bit for bit; and what does not move costs nothing.
 
-use residual_any_lanes::AnyLanes;
 use residual_device_cpu::{CpuDevice, Interpreter, LaneCount, Width};
 use residual_driver::poses::Poses;
 use residual_render::film::{Film, Sampling, TILE_SIZE};
@@ -11,6 +10,7 @@ use residual_render::tracer::{AnySharing, TracerNode};
 use residual_scenegen::effects::{Effect, Effects};
 use residual_scenegen::plan::{LightPicks, PlanOptions, plan};
 use residual_tests::pictures::first_difference;
+use residual_variants::AnyLanes;
 use serde_json::json;
 
 use super::file::{File, interpret, options, planned, planned_for, turn};

@@ -144,6 +144,11 @@ impl Film {
         self.height
     }
 
+    /// How its samples are spread.
+    pub fn sampling(&self) -> Sampling {
+        self.sampling
+    }
+
     /// Forgets the second set of samples: the stated error is then that of independent samples.
     pub fn drop_second_set(&mut self) {
         self.second = None;

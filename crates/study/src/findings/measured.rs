@@ -3,9 +3,10 @@
 use residual_accuracy::Estimate;
 use residual_accuracy::sweep::{FailureRate, Measurement};
 
-use crate::configuration::{Configuration, Tier, TraversalPrecision};
+use crate::configuration::{Configuration, Tier};
 use crate::probe::sums::Sums;
 use crate::reference::Reference;
+use residual_variants::TraversalPrecision;
 
 /// All that was measured.
 #[derive(Clone, Debug)]

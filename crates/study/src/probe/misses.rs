@@ -13,7 +13,7 @@ use residual_frontend::hierarchy_quality;
 use residual_render::scene_data::SceneData;
 
 use super::random::Random;
-use crate::configuration::TraversalPrecision;
+use residual_variants::TraversalPrecision;
 
 /// An edge of two triangles.
 struct SharedEdge {

@@ -22,7 +22,7 @@ use serde_json::{Value, json};
 pub use options::StudyOptions;
 
 use self::options::configurations;
-use crate::configuration::{Configuration, TraversalPrecision};
+use crate::configuration::Configuration;
 use crate::findings::{Crop, Measured, Provenance, Study, equal_time_samples};
 use crate::journal::Journal;
 use crate::measure;
@@ -31,6 +31,7 @@ use crate::probe::misses::Target;
 use crate::probe::sums::Sums;
 use crate::provenance;
 use crate::reference::{REFERENCE_DEPTH, Reference, ReferenceOptions, STRATEGIES};
+use residual_variants::TraversalPrecision;
 
 /// How far a study has come.
 #[derive(Clone, Debug)]

@@ -6,10 +6,9 @@ use residual_device_cpu::LaneCount;
 use residual_render::passes::RenderOptions;
 use residual_scenegen::plan::{CameraChoice, PlanOptions};
 
-use crate::configuration::{
-    BASELINE, CONFIGURATIONS, Configuration, Extent, Setup, Tier, TraversalPrecision,
-};
+use crate::configuration::{BASELINE, CONFIGURATIONS, Configuration, Extent, Setup, Tier};
 use crate::reference::{ReferenceOptions, STRATEGIES};
+use residual_variants::TraversalPrecision;
 
 /// What is to be measured.
 #[derive(Clone, Debug)]
