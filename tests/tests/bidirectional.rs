@@ -2,12 +2,13 @@
 //! and camera there is.
 
 use glam::{Affine3A, Vec3};
+use rayon::prelude::*;
 use residual_device_cpu::LaneCount;
 use residual_render::tracer::{AnyMis, AnySharing, TracerNode};
 use residual_scenegen::desc::{InstanceDesc, MaterialDesc, MeshDesc, PunctualKind, SceneDesc};
 use residual_scenegen::plan::{CullingRule, Plan, PlanOptions, plan};
 use residual_tests::fixtures::{color, material, matte, sheet};
-use residual_tests::tiny::{self, SIZE};
+use residual_tests::tiny::{self, SIZE, Tiny};
 use residual_tests::{Look, Prepared};
 
 /// Renders of a scene, which differ by their seeds.
@@ -110,39 +111,39 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     a.iter().zip(b).map(z).fold(0.0, f64::max)
 }
 
+/// What is wrong with the images of a scene.
+fn failures(tiny: &Tiny) -> Vec<String> {
+    let has_mirrors = SEEN_IN_MIRRORS.contains(&tiny.name);
+    let scene = match has_mirrors {
+        true => with_lamps(&tiny.scene),
+        false => tiny.scene.clone(),
+    };
+    let image = |tracer, samples| blocks(&planned(&scene, &tiny.options, tracer), samples);
+    let paths = image(TracerNode::Path(AnyMis::PowerHeuristic), 64);
+    let both = image(TracerNode::Bidirectional(AnySharing::Combined), 32);
+    let check = |what: &str, other: &[[f64; 2]]| {
+        let z = difference(&paths, other);
+        let mean = |blocks: &[[f64; 2]]| blocks.iter().map(|[mean, _]| mean).sum::<f64>();
+        let ratio = mean(other) / mean(&paths);
+        let message = format!("{} {what}: {z:.1} standard errors, {ratio:.4}", tiny.name);
+        println!("{message}");
+        // Of some 3,000 blocks, with 16 seeds each.
+        (z > 7.0).then_some(message)
+    };
+    let from_both = check("from both ends", &both);
+    // Paths from lights read textures as they are, where others are filtered. Directions below a mapped normal that was tilted
+    // for light's way are in no sample of theirs.
+    let differs = ["mipmaps", "normal_map"].contains(&tiny.name);
+    let from_lights = (!has_mirrors && !differs).then(|| {
+        let light = image(TracerNode::Bidirectional(AnySharing::LightPathsOnly), 64);
+        check("from lights", &light)
+    });
+    from_both.into_iter().chain(from_lights.flatten()).collect()
+}
+
 #[test]
 fn all_strategies_find_the_same_image() {
-    let mut failures = Vec::new();
-    for tiny in tiny::all() {
-        let has_mirrors = SEEN_IN_MIRRORS.contains(&tiny.name);
-        let scene = match has_mirrors {
-            true => with_lamps(&tiny.scene),
-            false => tiny.scene.clone(),
-        };
-        let image = |tracer, samples| blocks(&planned(&scene, &tiny.options, tracer), samples);
-        let paths = image(TracerNode::Path(AnyMis::PowerHeuristic), 128);
-        let both = image(TracerNode::Bidirectional(AnySharing::Combined), 32);
-        let mut check = |what: &str, other: &[[f64; 2]]| {
-            let z = difference(&paths, other);
-            let mean = |blocks: &[[f64; 2]]| blocks.iter().map(|[mean, _]| mean).sum::<f64>();
-            let ratio = mean(other) / mean(&paths);
-            println!("{} {what}: {z:.1} standard errors, {ratio:.4}", tiny.name);
-            // Of some 3,000 blocks, with 16 seeds each.
-            if z > 7.0 {
-                failures.push(format!(
-                    "{} {what}: {z:.1} standard errors, {ratio:.4}",
-                    tiny.name
-                ));
-            }
-        };
-        check("from both ends", &both);
-        // Paths from lights read textures as they are, where others are filtered. Directions below a mapped normal that was tilted
-        // for light's way are in no sample of theirs.
-        let differs = ["mipmaps", "normal_map"].contains(&tiny.name);
-        if !has_mirrors && !differs {
-            let light = image(TracerNode::Bidirectional(AnySharing::LightPathsOnly), 128);
-            check("from lights", &light);
-        }
-    }
+    // Their images are single tiles, which keep one processor busy.
+    let failures: Vec<_> = tiny::all().par_iter().flat_map(failures).collect();
     assert!(failures.is_empty(), "{failures:#?}");
 }

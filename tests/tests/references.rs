@@ -5,6 +5,7 @@
 //! metals; and it sees textures with mipmaps. Tolerances are the measured difference plus noise, so that a change of
 //! any formula that matters is seen.
 
+use rayon::prelude::*;
 use residual_device_cpu::LaneCount;
 use residual_scenegen::plan::{CameraChoice, CullingRule, PlanOptions, View, plan};
 use residual_tests::pictures::{mean, ratios, read_exr, within};
@@ -88,12 +89,12 @@ fn means_agree_with_cycles() {
         .lines()
         .map(|line| serde_json::from_str(line).unwrap())
         .collect();
-    let mut off = Vec::new();
     println!(
         "{:<32} {:>4} {:>8} {:>8} {:>8}  tolerance",
         "scene", "spp", "red", "green", "blue"
     );
-    for reference in REFERENCES {
+    // Importing and planning keep one processor busy.
+    let off = REFERENCES.par_iter().filter_map(|reference| {
         let entry = entries
             .iter()
             .find(|entry| entry["scene"] == reference.scene)
@@ -150,9 +151,8 @@ fn means_agree_with_cycles() {
             ..
         } = reference;
         println!("{scene:<32} {samples:>4} {r:>8.4} {g:>8.4} {b:>8.4}  {tolerance}");
-        if !within(ratios, *tolerance) {
-            off.push((reference.scene, ratios));
-        }
-    }
+        (!within(ratios, *tolerance)).then_some((reference.scene, ratios))
+    });
+    let off: Vec<_> = off.collect();
     assert!(off.is_empty(), "ours over theirs: {off:#?}");
 }

@@ -157,7 +157,7 @@ fn facets_have_their_directional_albedo() {
                 let facets = facets(normal, grazing, roughness);
                 let name = format!("roughness {roughness}, cos {cos}, {normal:?}");
                 let (seen, all) = (albedo(&facets, cos), mean_reflection(&facets, cos));
-                // The fit is off by 2e-3 of the first reflection at most, which the rest multiplies.
+                // The fit is off by 5e-4 of the first reflection at most, which the rest multiplies.
                 let rest = at(|d, surface| {
                     let ggx = facets.roughness.microfacets(d, surface);
                     let curve = facets.fresnel.curve(d, surface, cos);
@@ -166,8 +166,8 @@ fn facets_have_their_directional_albedo() {
                     [x, y, z]
                 });
                 let first = |sum: [f64; 3]| [0, 1, 2].map(|k| sum[k] / rest[k]);
-                assert_near(&name, first(seen), first(all), 2.5e-3);
-                assert_near(&name, seen, all, 6e-3);
+                assert_near(&name, first(seen), first(all), 8e-4);
+                assert_near(&name, seen, all, 2e-3);
             }
         }
     }

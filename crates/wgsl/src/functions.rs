@@ -128,6 +128,22 @@ struct Recorder<'s> {
 }
 
 impl Recorder<'_> {
+    /// The name of a function, which says at which end its paths begin: a module may have both.
+    fn name(self, function: &str) -> String {
+        match self.origin {
+            PathOrigin::Camera => function.to_owned(),
+            PathOrigin::Lights => format!("light_{function}"),
+        }
+    }
+
+    /// The name of a function's outputs.
+    fn result(self, of_camera: &'static str, of_lights: &'static str) -> &'static str {
+        match self.origin {
+            PathOrigin::Camera => of_camera,
+            PathOrigin::Lights => of_lights,
+        }
+    }
+
     /// Paths of both ends are weighed against each other.
     fn has_rivals(self) -> bool {
         self.structure.tracer.has_light_paths()
@@ -209,8 +225,8 @@ impl Recorder<'_> {
             self.outputs(d, &step, set, outcome)
         });
         (!outputs.is_empty()).then(|| Recorded {
-            function: tape.function(format!("program_{index}_step"), outputs),
-            result: "Step",
+            function: tape.function(self.name(&format!("program_{index}_step")), outputs),
+            result: self.result("Step", "LightStep"),
             comment: "What becomes of a path that hits a surface of this program.".to_owned(),
         })
     }
@@ -290,8 +306,8 @@ impl Recorder<'_> {
             outputs = layers(outputs, &Features::of_miss(d, set, &path), set);
         }
         (!outputs.is_empty()).then(|| Recorded {
-            function: tape.function("miss", outputs),
-            result: "Miss",
+            function: tape.function(self.name("miss"), outputs),
+            result: self.result("Miss", "LightMiss"),
             comment: "What a path sees whose ray hits nothing.".to_owned(),
         })
     }
@@ -329,23 +345,17 @@ impl Recorder<'_> {
         let Structure {
             camera, sampler, ..
         } = self.structure;
-        let (result, comment) = match self.origin {
-            PathOrigin::Camera => (
-                "CameraPath",
-                format!(
-                    "{camera:?}, {sampler:?}: a path of throughput 1 through a place of the pixel at (x, y)."
-                ),
+        let comment = match self.origin {
+            PathOrigin::Camera => format!(
+                "{camera:?}, {sampler:?}: a path of throughput 1 through a place of the pixel at (x, y)."
             ),
-            PathOrigin::Lights => (
-                "LightPath",
-                format!(
-                    "{sampler:?}: a path from a light; of as many in an image as there are pixels, the one with the number of this."
-                ),
+            PathOrigin::Lights => format!(
+                "{sampler:?}: a path from a light; of as many in an image as there are pixels, the one with the number of this."
             ),
         };
         Recorded {
-            function: tape.function("emit", outputs),
-            result,
+            function: tape.function(self.name("emit"), outputs),
+            result: self.result("CameraPath", "LightPath"),
             comment,
         }
     }

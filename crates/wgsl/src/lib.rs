@@ -32,11 +32,21 @@ use residual_render::domain::tape::Function;
 use residual_render::program::Structure;
 use residual_render::tracer::PathOrigin;
 
-/// The functions of a scene in one text: `emit`, for each program `program_K_step` and `_alpha_test`, and `miss`. What the
-/// scene does not call for is not there. Paths begin at the camera.
+/// The functions of a scene in one text: `emit`, for each program `program_K_step` and `_alpha_test`, and `miss`; where paths begin at
+/// lights, too, those of theirs, named `light_emit` and so on. What the scene does not call for is not there.
 pub fn scene_module(structure: &Structure) -> String {
-    let functions = SceneFunctions::of(structure, PathOrigin::Camera);
     let mut module = Module::new(Arithmetic::default());
+    add_functions(&mut module, structure, PathOrigin::Camera);
+    if structure.tracer.has_light_paths() {
+        module.heading("Paths from lights");
+        add_functions(&mut module, structure, PathOrigin::Lights);
+    }
+    module.finish()
+}
+
+/// The functions of paths that begin at one end.
+fn add_functions(module: &mut Module, structure: &Structure, origin: PathOrigin) {
+    let functions = SceneFunctions::of(structure, origin);
     module.add(&functions.emit);
     for program in &functions.programs {
         module.heading(&program.description);
@@ -47,7 +57,6 @@ pub fn scene_module(structure: &Structure) -> String {
     if let Some(miss) = &functions.miss {
         module.add(miss);
     }
-    module.finish()
 }
 
 /// One recorded function as a text of its own, several outputs in the structure `result`, with what it refers to.

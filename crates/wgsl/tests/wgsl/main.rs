@@ -14,7 +14,9 @@ use residual_render::program::{
 use residual_render::sampler::AnySampler;
 use residual_render::surface::Attributes;
 use residual_render::texture::Input;
-use residual_render::tracer::{AnyNesting, Between, DebugView, MatterNode, MediaNode, TracerNode};
+use residual_render::tracer::{
+    AnyNesting, AnySharing, Between, DebugView, MatterNode, MediaNode, TracerNode,
+};
 use residual_wgsl::{Arithmetic, Binding, KernelSet, Mapping, function_module, scene_module};
 
 use crate::naga_checks::{accept, no_dead_code};
@@ -140,6 +142,31 @@ fn every_tracer_and_layer() {
             assert_eq!(text.contains("albedo: vec3f"), layers != Layers::NONE);
         }
     }
+}
+
+#[test]
+fn paths_from_both_ends() {
+    for sharing in [AnySharing::Combined, AnySharing::LightPathsOnly] {
+        let text = scene_module(&Structure {
+            tracer: TracerNode::Bidirectional(sharing),
+            ..everything()
+        });
+        no_dead_code(&text);
+        for function in [
+            "emit",
+            "light_emit",
+            "program_0_step",
+            "light_program_0_step",
+        ] {
+            assert_eq!(
+                text.matches(&format!("fn {function}(")).count(),
+                1,
+                "{function}"
+            );
+        }
+        assert!(text.contains("shadow_pixel"));
+    }
+    assert!(!scene_module(&everything()).contains("light_emit"));
 }
 
 /// Media and dispersion are printed where a scene has them, and nowhere else.
