@@ -1,6 +1,6 @@
 //! How kernels call recorded functions, and what they do with what comes back.
 
-use crate::functions::Recorded;
+use crate::recorded::Recorded;
 
 /// How a path goes on: statements on what `step` has, in which `SHADOW` stands for its shadow ray and `PATH` for the path behind it.
 pub(crate) struct WayOn {

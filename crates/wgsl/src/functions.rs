@@ -2,44 +2,21 @@
 //!
 //! Options of the tracer are parameters, so that none of them makes another module.
 
-use residual_render::alpha::AlphaTest as _;
-use residual_render::domain::tape::{Function, Outputs, Record, Tape};
+use residual_render::domain::tape::{Outputs, Record, Tape};
 use residual_render::domain::{Buffers, Domain};
 use residual_render::layer::Layers;
 use residual_render::math::Vec3;
 use residual_render::math::vec3::vec3;
-use residual_render::program::{AlphaTestNode, BoxedMaterial, Interpreted, Program, Structure};
+use residual_render::program::{BoxedMaterial, Interpreted, Program, Structure};
 use residual_render::renderer::Renderer;
 use residual_render::sampler::SampleKey;
-use residual_render::surface::{PathRay, SurfaceHit};
+use residual_render::surface::PathRay;
 use residual_render::tracer::{
     self, Features, Path, PathOrigin, PathState, Settings, Step, Tracer,
 };
-use residual_render::triangle;
 
-/// A recorded function with what is printed around it.
-#[derive(Clone, Debug)]
-pub struct Recorded {
-    /// The function.
-    pub function: Function,
-    /// The structure that it returns, if it has several outputs.
-    pub result: &'static str,
-    /// What it is for.
-    pub comment: String,
-}
-
-impl Recorded {
-    /// The expression that reads an output from `value`, which the function has returned; `None` if there is no such
-    /// output.
-    pub fn output(&self, value: &str, output: &str) -> Option<String> {
-        let outputs = &self.function.outputs;
-        let is_there = outputs.iter().any(|o| o.name == output);
-        is_there.then(|| match outputs.len() {
-            1 => value.to_owned(),
-            _ => format!("{value}.{output}"),
-        })
-    }
-}
+use crate::hit_functions::{alpha_test, hit, program_of};
+use crate::recorded::Recorded;
 
 /// What a structure calls for.
 #[derive(Clone, Debug)]
@@ -99,16 +76,6 @@ fn describe(index: usize, program: &Program) -> String {
         program.bsdf,
         inputs.join(", ")
     )
-}
-
-/// A hit, as parameters.
-fn hit(tape: &Tape) -> SurfaceHit<Record<'_>> {
-    let prim = tape.word("prim");
-    SurfaceHit {
-        prim,
-        u: tape.real("u"),
-        v: tape.real("v"),
-    }
 }
 
 /// Whether the structure's tracer ever has a contribution, a shadow ray, a bounce at a hit: all programs return the
@@ -377,31 +344,4 @@ fn layers<'t>(
         };
     }
     outputs
-}
-
-fn alpha_test(index: usize, node: &AlphaTestNode) -> Recorded {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let hit = hit(&tape);
-    let ray = [tape.vector("org"), tape.vector("dir")];
-    let passes = node.boxed::<Record<'_>>().passes(d, ray, &hit);
-    Recorded {
-        function: tape.function(
-            format!("program_{index}_alpha_test"),
-            Outputs::new().truth("passes", passes),
-        ),
-        result: "",
-        comment: "Whether the surface is there for this hit of the ray.".to_owned(),
-    }
-}
-
-fn program_of() -> Recorded {
-    let tape = Tape::new();
-    let d = Record::new(&tape);
-    let program = triangle::program_of(d, tape.word("prim"));
-    Recorded {
-        function: tape.function("program_of", Outputs::new().word("program", program)),
-        result: "",
-        comment: "The index of a triangle's program.".to_owned(),
-    }
 }

@@ -6,8 +6,9 @@ use residual_render::tracer::{MAX_DEPTH, PathOrigin};
 
 use crate::arithmetic::Arithmetic;
 use crate::calls::{FOLLOWED, QUEUED, QUEUED_IN_CASE, WayOn, call};
-use crate::functions::{Recorded, SceneFunctions};
+use crate::functions::SceneFunctions;
 use crate::module::Module;
+use crate::recorded::Recorded;
 use crate::sections::sections;
 use crate::shade_kernel::add_shade;
 

@@ -11,22 +11,25 @@ mod arithmetic;
 mod bindings;
 mod calls;
 mod functions;
+mod hit_functions;
 mod kernel_set;
 mod kernels;
 mod module;
 mod names;
 mod print;
 mod rays_kernel;
+mod recorded;
 mod sections;
 mod shade_kernel;
 
 pub use arithmetic::{Arithmetic, Division, Fma, SquareRoot};
 pub use bindings::Binding;
-pub use functions::{ProgramFunctions, Recorded, SceneFunctions};
+pub use functions::{ProgramFunctions, SceneFunctions};
 pub use kernel_set::{KernelSet, KernelTexts, Mapping};
 pub use kernels::{Kernels, STACK, Traits, WORKGROUP};
 pub use module::Module;
 pub use rays_kernel::rays_kernel;
+pub use recorded::Recorded;
 
 use residual_render::domain::tape::Function;
 use residual_render::program::Structure;

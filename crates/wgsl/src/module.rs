@@ -7,9 +7,9 @@ use residual_render::domain::tape::Output;
 
 use crate::arithmetic::{Arithmetic, Helper};
 use crate::bindings::Bindings;
-use crate::functions::Recorded;
 use crate::names::type_name;
 use crate::print::print;
+use crate::recorded::Recorded;
 
 const HEADER: &str = "\
 // Printed by residual-wgsl from a scene's structure. Directions are world space. A path is its ray (`org`, `dir`, a unit
