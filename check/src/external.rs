@@ -19,20 +19,14 @@ pub(crate) fn format(root: &Path) -> Result<Vec<Problem>> {
 }
 
 pub(crate) fn lints(root: &Path) -> Result<Vec<Problem>> {
-    let mut command = cargo(root);
-    command
-        .args(["clippy", "--release", "--workspace", "--all-targets"])
-        .args(BUILT_BY_THE_GENERATOR.map(|name| format!("--exclude={name}")))
-        .args(["--quiet", "--", "-D", "warnings"]);
+    let mut command = cargo_of_workspace(root, "clippy");
+    command.args(["--all-targets", "--", "-D", "warnings"]);
     run(command, "there are warnings", "follow them")
 }
 
 pub(crate) fn documentation(root: &Path) -> Result<Vec<Problem>> {
-    let mut command = cargo(root);
-    command
-        .args(["doc", "--release", "--workspace", "--no-deps", "--quiet"])
-        .args(BUILT_BY_THE_GENERATOR.map(|name| format!("--exclude={name}")))
-        .env("RUSTDOCFLAGS", "-D warnings");
+    let mut command = cargo_of_workspace(root, "doc");
+    command.arg("--no-deps").env("RUSTDOCFLAGS", "-D warnings");
     run(
         command,
         "there are warnings in documentation",
@@ -50,6 +44,15 @@ pub(crate) fn freshness(root: &Path) -> Result<Vec<Problem>> {
         "scenes are not those that their generator writes",
         "python3 scenes/generate.py",
     )
+}
+
+/// One of cargo's commands, for all packages but those.
+fn cargo_of_workspace(root: &Path, name: &str) -> Command {
+    let mut command = cargo(root);
+    command
+        .args([name, "--release", "--workspace", "--quiet"])
+        .args(BUILT_BY_THE_GENERATOR.map(|package| format!("--exclude={package}")));
+    command
 }
 
 fn run(mut command: Command, what: &str, remedy: &str) -> Result<Vec<Problem>> {

@@ -1,6 +1,4 @@
 //! glTF geometry, feature by feature, with exact expected values.
-//!
-//! Longer than 400 lines: one test for each feature, which read as a table.
 
 use crate::common::gltf_text::{
     F32, Gltf, I8, I16, SQUARE, U8, U16, U32, f32_bytes, u16_bytes, warns,
@@ -18,13 +16,7 @@ fn every_index_type_gives_the_same_triangles() {
     let u8_bytes: Vec<u8> = corners.iter().map(|&i| i as u8).collect();
     for (component, bytes) in [(U8, u8_bytes), (U16, u16_bytes(&corners)), (U32, u32_bytes)] {
         let mut gltf = Gltf::square();
-        gltf.attribute(
-            "NORMAL",
-            "VEC3",
-            F32,
-            &f32_bytes([[0., 0., 2.]; 4].as_flattened()),
-            4,
-        );
+        gltf.floats("NORMAL", "VEC3", [[0., 0., 2.]; 4].as_flattened());
         gltf.indices(component, &bytes, 6);
         let mesh = gltf.mesh();
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
@@ -36,13 +28,7 @@ fn every_index_type_gives_the_same_triangles() {
 fn strips_alternate_and_fans_turn_around_the_first_corner() {
     for (mode, expected) in [(5, [[0, 1, 2], [1, 3, 2]]), (6, [[1, 2, 0], [2, 3, 0]])] {
         let mut gltf = Gltf::square();
-        gltf.attribute(
-            "NORMAL",
-            "VEC3",
-            F32,
-            &f32_bytes([[0., 0., 1.]; 4].as_flattened()),
-            4,
-        );
+        gltf.floats("NORMAL", "VEC3", [[0., 0., 1.]; 4].as_flattened());
         gltf.primitive()["mode"] = json!(mode);
         assert_eq!(gltf.mesh().triangles, expected, "mode {mode}");
     }
@@ -66,13 +52,7 @@ fn points_and_lines_are_skipped_with_a_warning() {
 #[test]
 fn missing_normals_are_flat_on_vertices_of_their_own() {
     let mut gltf = Gltf::square();
-    gltf.attribute(
-        "TEXCOORD_0",
-        "VEC2",
-        F32,
-        &f32_bytes(&[0., 0., 1., 0., 1., 1., 0., 1.]),
-        4,
-    );
+    gltf.floats("TEXCOORD_0", "VEC2", &[0., 0., 1., 0., 1., 1., 0., 1.]);
     gltf.indices(U16, &u16_bytes(&[0, 1, 2, 0, 3, 2]), 6);
     let mesh = gltf.mesh();
     assert_eq!(mesh.triangles, [[0, 1, 2], [3, 4, 5]]);
@@ -86,13 +66,7 @@ fn missing_normals_are_flat_on_vertices_of_their_own() {
 fn sparse_elements_replace_those_of_the_buffer_or_zeros() {
     let mut gltf = Gltf::square();
     gltf.indices(U8, &[0, 1, 2], 3);
-    gltf.attribute(
-        "NORMAL",
-        "VEC3",
-        F32,
-        &f32_bytes([[0., 0., 1.]; 4].as_flattened()),
-        4,
-    );
+    gltf.floats("NORMAL", "VEC3", [[0., 0., 1.]; 4].as_flattened());
     let (indices, values) = (gltf.view(&[2]), gltf.view(&f32_bytes(&[5., 6., 7.])));
     gltf.json["accessors"][0]["sparse"] = json!({
         "count": 1,
@@ -200,13 +174,7 @@ fn colours_are_read_with_and_without_alpha() {
         mesh.colors.unwrap()[0],
         Vec4::new(1., 0., 0., 32768. / 65535.)
     );
-    gltf.attribute(
-        "COLOR_0",
-        "VEC3",
-        F32,
-        &f32_bytes(&[0.25, 0.5, 1.].repeat(4)),
-        4,
-    );
+    gltf.floats("COLOR_0", "VEC3", &[0.25, 0.5, 1.].repeat(4));
     assert_eq!(gltf.mesh().colors.unwrap()[0], Vec4::new(0.25, 0.5, 1., 1.));
 }
 
@@ -252,19 +220,11 @@ fn vertex_colours_are_forced_into_their_range_component_by_component() {
 fn non_finite_vertices_drop_their_triangles() {
     let mut gltf = Gltf::new();
     let positions = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [f32::NAN, 1., 0.]];
-    gltf.attribute(
-        "POSITION",
-        "VEC3",
-        F32,
-        &f32_bytes(positions.as_flattened()),
-        4,
-    );
-    gltf.attribute(
+    gltf.floats("POSITION", "VEC3", positions.as_flattened());
+    gltf.floats(
         "NORMAL",
         "VEC3",
-        F32,
-        &f32_bytes(&[0., 0., 0., 0., 0., f32::NAN, 0., 0., 9., 0., 1., 0.]),
-        4,
+        &[0., 0., 0., 0., 0., f32::NAN, 0., 0., 9., 0., 1., 0.],
     );
     gltf.indices(U8, &[0, 1, 2, 0, 2, 3], 6);
     let scene = gltf.import().unwrap();
@@ -312,7 +272,7 @@ fn indices_and_accessors_out_of_range_are_refused() {
 fn attributes_of_other_lengths_are_left_out() {
     let mut gltf = Gltf::square();
     gltf.indices(U8, &[0, 1, 2], 3);
-    gltf.attribute("NORMAL", "VEC3", F32, &f32_bytes(&[0., 1., 0.]), 1);
+    gltf.floats("NORMAL", "VEC3", &[0., 1., 0.]);
     gltf.primitive()["attributes"]["TEXCOORD_0"] = json!(9);
     let scene = gltf.import().unwrap();
     let problem = "has 1 elements, but POSITION has 4; the attribute is left out";
@@ -330,21 +290,9 @@ fn with_normal_map(gltf: &mut Gltf) {
 #[test]
 fn tangents_are_computed_where_a_normal_map_needs_them() {
     let mut gltf = Gltf::square();
-    gltf.attribute(
-        "NORMAL",
-        "VEC3",
-        F32,
-        &f32_bytes([[0., 0., 1.]; 4].as_flattened()),
-        4,
-    );
+    gltf.floats("NORMAL", "VEC3", [[0., 0., 1.]; 4].as_flattened());
     // v grows downwards, so that the picture stands upright.
-    gltf.attribute(
-        "TEXCOORD_0",
-        "VEC2",
-        F32,
-        &f32_bytes(&[0., 1., 1., 1., 1., 0., 0., 0.]),
-        4,
-    );
+    gltf.floats("TEXCOORD_0", "VEC2", &[0., 1., 1., 1., 1., 0., 0., 0.]);
     gltf.indices(U8, &[0, 1, 2, 0, 2, 3], 6);
     assert_eq!(gltf.mesh().tangents, None);
     with_normal_map(&mut gltf);
@@ -353,25 +301,13 @@ fn tangents_are_computed_where_a_normal_map_needs_them() {
         [Vec4::new(1., 0., 0., 1.); 4]
     );
 
-    gltf.attribute(
-        "TANGENT",
-        "VEC4",
-        F32,
-        &f32_bytes(&[0., 3., 0., -1.].repeat(4)),
-        4,
-    );
+    gltf.floats("TANGENT", "VEC4", &[0., 3., 0., -1.].repeat(4));
     assert_eq!(
         gltf.mesh().tangents.unwrap(),
         [Vec4::new(0., 1., 0., -1.); 4],
         "given ones are kept"
     );
-    gltf.attribute(
-        "TANGENT",
-        "VEC4",
-        F32,
-        &f32_bytes(&[0., 0., 0., -1.].repeat(4)),
-        4,
-    );
+    gltf.floats("TANGENT", "VEC4", &[0., 0., 0., -1.].repeat(4));
     assert_eq!(
         gltf.mesh().tangents.unwrap(),
         [Vec4::new(1., 0., 0., 1.); 4],
@@ -383,27 +319,9 @@ fn tangents_are_computed_where_a_normal_map_needs_them() {
 fn vertices_are_split_where_the_texture_is_mirrored() {
     let mut gltf = Gltf::new();
     let positions = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [2., 0., 0.]];
-    gltf.attribute(
-        "POSITION",
-        "VEC3",
-        F32,
-        &f32_bytes(positions.as_flattened()),
-        4,
-    );
-    gltf.attribute(
-        "NORMAL",
-        "VEC3",
-        F32,
-        &f32_bytes([[0., 0., 1.]; 4].as_flattened()),
-        4,
-    );
-    gltf.attribute(
-        "TEXCOORD_0",
-        "VEC2",
-        F32,
-        &f32_bytes(&[0., 1., 1., 1., 1., 0., 0., 1.]),
-        4,
-    );
+    gltf.floats("POSITION", "VEC3", positions.as_flattened());
+    gltf.floats("NORMAL", "VEC3", [[0., 0., 1.]; 4].as_flattened());
+    gltf.floats("TEXCOORD_0", "VEC2", &[0., 1., 1., 1., 1., 0., 0., 1.]);
     gltf.indices(U8, &[0, 1, 2, 1, 3, 2], 6);
     with_normal_map(&mut gltf);
     let mesh = gltf.mesh();

@@ -1,9 +1,7 @@
 //! Images of every kind, by the values that the scene gets of them.
 
-use std::path::Path;
-
 use crate::common;
-use crate::common::gltf_text::{Gltf, warns};
+use crate::common::gltf_text::{Gltf, under, warns};
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
     LayerAttributes, Vec2, WritableImage, f16,
@@ -11,23 +9,8 @@ use exr::prelude::{
 use residual_render::domain::Buffer;
 use residual_render::texture::srgb_decoded;
 use residual_scenegen::desc::{SceneDesc, Texels};
-use residual_scenegen::import::{EnvironmentOptions, ImportOptions};
 use residual_scenegen::plan::{PlanOptions, plan};
 use serde_json::json;
-
-/// A square under an environment.
-fn under(path: &Path) -> SceneDesc {
-    let environment = EnvironmentOptions {
-        path: path.to_owned(),
-        strength: 1.0,
-        rotation_degrees: 0.0,
-    };
-    let options = ImportOptions {
-        environment: Some(environment),
-        ..ImportOptions::default()
-    };
-    Gltf::square().import_with(&options).unwrap()
-}
 
 fn floats(scene: &SceneDesc) -> &[[f32; 4]] {
     match &scene.images[0].texels {

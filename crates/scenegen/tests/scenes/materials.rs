@@ -4,10 +4,10 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use crate::common::gltf_text::{F32, Gltf, U8, f32_bytes, warns};
+use crate::common::gltf_text::{Gltf, U8, warns};
 use residual_scenegen::desc::{
-    AlphaMode, Filter, MaterialDesc, MetallicRoughness, ScalarInput, Scattering, SceneDesc,
-    SurfaceDesc, Texels, Wrap,
+    AlphaMode, Filter, MaterialDesc, MetallicRoughness, ScalarInput, Scattering, SurfaceDesc,
+    Texels, Wrap,
 };
 use residual_scenegen::effects::Effect;
 use residual_scenegen::import::{ImportError, ImportOptions};
@@ -15,8 +15,8 @@ use serde_json::{Value, json};
 
 fn square_with(material: Value) -> Gltf {
     let mut gltf = Gltf::square();
-    gltf.attribute("TEXCOORD_0", "VEC2", F32, &f32_bytes(&[0.; 8]), 4);
-    gltf.attribute("TEXCOORD_1", "VEC2", F32, &f32_bytes(&[0.; 8]), 4);
+    gltf.floats("TEXCOORD_0", "VEC2", &[0.; 8]);
+    gltf.floats("TEXCOORD_1", "VEC2", &[0.; 8]);
     gltf.indices(U8, &[0, 1, 2], 3);
     gltf.json["materials"] = json!([material]);
     gltf.primitive()["material"] = json!(0);
@@ -450,7 +450,7 @@ fn any_set_of_texture_coordinates_may_be_read() {
         "emissiveFactor": [1, 1, 1],
         "emissiveTexture": { "index": 0, "texCoord": 1 },
     }));
-    gltf.attribute("TEXCOORD_3", "VEC2", F32, &f32_bytes(&[0.25; 8]), 4);
+    gltf.floats("TEXCOORD_3", "VEC2", &[0.25; 8]);
     let scene = gltf.import().unwrap();
     let material = &scene.materials[0];
     let surface = surface(material);
@@ -537,13 +537,6 @@ fn numbers_out_of_range_are_clamped_with_a_warning() {
     assert_eq!(scene.warnings.len(), 4, "{:?}", scene.warnings);
 }
 
-fn surface_of(scene: &SceneDesc) -> &MetallicRoughness {
-    match &scene.materials[0].surface {
-        SurfaceDesc::MetallicRoughness(surface) => surface,
-        other => panic!("{other:?}"),
-    }
-}
-
 /// Both drafts of KHR_materials_volume_scatter, which name the colour differently; and what needs a volume and has none.
 #[test]
 fn bodies_that_scatter() {
@@ -565,7 +558,7 @@ fn bodies_that_scatter() {
             "attenuationDistance": 0.1,
         }));
         assert_eq!(
-            surface_of(&scene).scattering,
+            surface(&scene.materials[0]).scattering,
             Some(Scattering {
                 multiscatter_color: [0.5, 0.25, 0.75],
                 anisotropy: 0.25,
@@ -593,12 +586,12 @@ fn priorities_of_bodies_are_whole_numbers_of_extras() {
         (json!([1, 2]), 0),
     ] {
         let scene = with(extras);
-        assert_eq!(surface_of(&scene).priority, priority);
+        assert_eq!(surface(&scene.materials[0]).priority, priority);
         assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     }
     for extras in [json!({ "priority": 0.5 }), json!({ "priority": "first" })] {
         let scene = with(extras);
-        assert_eq!(surface_of(&scene).priority, 0);
+        assert_eq!(surface(&scene.materials[0]).priority, 0);
         assert!(warns(&scene, "materials/0 \"glass\"", "priority"));
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec4;
 use residual_scenegen::desc::{AlphaMode, MetallicRoughness, SurfaceDesc};
 
 use crate::common::gltf_text::warns;
-use crate::common::obj_text::{material, phong, red};
+use crate::common::obj_text::{material, mirror, phong, red};
 
 #[test]
 fn colours_and_exponents_are_read() {
@@ -35,13 +35,7 @@ fn illum_with_reflection_is_a_mirror() {
     for illum in [3, 5, 8] {
         let statements = format!("Kd 0.1 0.2 0.3\nKs 0.4 0.5 0.6\nNs 1000\nillum {illum}");
         let (material, scene) = material(&statements);
-        let SurfaceDesc::Mirror {
-            diffuse,
-            reflectance,
-        } = &material.surface
-        else {
-            panic!("{material:?}")
-        };
+        let [diffuse, reflectance] = mirror(&material);
         assert_eq!(diffuse.factor, [0.1, 0.2, 0.3]);
         assert_eq!(reflectance.factor, [0.4, 0.5, 0.6]);
         assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);

@@ -1,21 +1,13 @@
 //! Surfaces of MTL files reflect no more than arrives.
 
-use residual_scenegen::desc::SurfaceDesc;
-
 use crate::common::gltf_text::warns;
-use crate::common::obj_text::{material, phong};
+use crate::common::obj_text::{material, mirror, phong};
 
 /// What MTL adds may reflect more than arrives.
 #[test]
 fn mirrors_conserve_energy() {
     let (material, scene) = material("Kd 0.5 0.5 1\nKs 1 0 1\nmap_Ks white.png\nillum 3");
-    let SurfaceDesc::Mirror {
-        diffuse,
-        reflectance,
-    } = &material.surface
-    else {
-        panic!("{material:?}")
-    };
+    let [diffuse, reflectance] = mirror(&material);
     assert_eq!(diffuse.factor, [0.25, 0.25, 0.5]);
     assert_eq!(reflectance.factor, [0.5, 0.0, 0.5]);
     assert!(reflectance.texture.is_some());

@@ -1,15 +1,12 @@
 //! OpenEXR pictures of other primaries than those of displays.
 
-use std::path::Path;
-
-use crate::common::gltf_text::{Gltf, warns};
+use crate::common::gltf_text::{under, warns};
 use exr::meta::attribute::Chromaticities;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
     LayerAttributes, Vec2, WritableImage,
 };
 use residual_scenegen::desc::{SceneDesc, Texels};
-use residual_scenegen::import::{EnvironmentOptions, ImportOptions};
 
 /// CIE xy of red, green, blue and white.
 fn chromaticities([red, green, blue, white]: [[f32; 2]; 4]) -> Chromaticities {
@@ -43,19 +40,6 @@ fn read(channels: &[(&str, f32)], given: Option<[[f32; 2]; 4]>) -> ([f32; 4], Sc
         Texels::RgbaF32(texels) => (texels[0], scene),
         other => panic!("{other:?}"),
     }
-}
-
-fn under(path: &Path) -> SceneDesc {
-    let environment = EnvironmentOptions {
-        path: path.to_owned(),
-        strength: 1.0,
-        rotation_degrees: 0.0,
-    };
-    let options = ImportOptions {
-        environment: Some(environment),
-        ..ImportOptions::default()
-    };
-    Gltf::square().import_with(&options).unwrap()
 }
 
 const D65: [f32; 2] = [0.3127, 0.329];

@@ -90,13 +90,7 @@ fn skinned() -> Gltf {
         [1.5, 0.5, 0.0, 0.0],
         [1.0, 0.0, 0.0, 0.0],
     ];
-    gltf.attribute(
-        "WEIGHTS_0",
-        "VEC4",
-        F32,
-        &f32_bytes(weights.as_flattened()),
-        4,
-    );
+    gltf.floats("WEIGHTS_0", "VEC4", weights.as_flattened());
     let translation = |t: [f32; 3]| {
         [
             1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., t[0], t[1], t[2], 1.,

@@ -1,9 +1,9 @@
 //! Small glTF files, written from text and arrays.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use residual_scenegen::desc::{MeshDesc, SceneDesc};
-use residual_scenegen::import::{ImportError, ImportOptions, import};
+use residual_scenegen::import::{EnvironmentOptions, ImportError, ImportOptions, import};
 use serde_json::{Value, json};
 
 /// A file in the making: one buffer, filled by accessors.
@@ -57,13 +57,7 @@ impl Gltf {
     /// The square as four vertices, without indices.
     pub(crate) fn square() -> Self {
         let mut gltf = Self::new();
-        gltf.attribute(
-            "POSITION",
-            "VEC3",
-            F32,
-            &f32_bytes(SQUARE.as_flattened()),
-            4,
-        );
+        gltf.floats("POSITION", "VEC3", SQUARE.as_flattened());
         gltf
     }
 
@@ -107,6 +101,19 @@ impl Gltf {
         accessor
     }
 
+    /// An attribute of floats, as many as its kind has for each vertex.
+    pub(crate) fn floats(&mut self, name: &str, kind: &str, values: &[f32]) -> usize {
+        let components = match kind {
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            other => panic!("{other}: no kind of an attribute"),
+        };
+        assert!(values.len().is_multiple_of(components), "{name}");
+        let count = values.len() / components;
+        self.attribute(name, kind, F32, &f32_bytes(values), count)
+    }
+
     pub(crate) fn indices(&mut self, component: u64, bytes: &[u8], count: usize) {
         let accessor = self.accessor("SCALAR", component, bytes, count);
         self.primitive()["indices"] = json!(accessor);
@@ -145,6 +152,20 @@ impl Gltf {
             assert!(message.contains(text), "{message:?} does not say {text:?}");
         }
     }
+}
+
+/// A square under an environment.
+pub(crate) fn under(path: &Path) -> SceneDesc {
+    let environment = EnvironmentOptions {
+        path: path.to_owned(),
+        strength: 1.0,
+        rotation_degrees: 0.0,
+    };
+    let options = ImportOptions {
+        environment: Some(environment),
+        ..ImportOptions::default()
+    };
+    Gltf::square().import_with(&options).unwrap()
 }
 
 /// Whether some warning has both texts.

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use residual_scenegen::desc::{MaterialDesc, PhongSurface, SceneDesc, SurfaceDesc, Texels};
+use residual_scenegen::desc::{
+    ColorInput, MaterialDesc, PhongSurface, SceneDesc, SurfaceDesc, Texels,
+};
 use residual_scenegen::import::{ImportError, ImportOptions, import};
 use tempfile::TempDir;
 
@@ -73,6 +75,17 @@ pub(crate) fn material(statements: &str) -> (MaterialDesc, SceneDesc) {
 pub(crate) fn phong(material: &MaterialDesc) -> &PhongSurface {
     match &material.surface {
         SurfaceDesc::Phong(phong) => phong,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Diffuse colour and reflectance of a mirror.
+pub(crate) fn mirror(material: &MaterialDesc) -> [&ColorInput; 2] {
+    match &material.surface {
+        SurfaceDesc::Mirror {
+            diffuse,
+            reflectance,
+        } => [diffuse, reflectance],
         other => panic!("{other:?}"),
     }
 }
