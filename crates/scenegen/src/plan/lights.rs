@@ -15,19 +15,19 @@ use residual_render::program::{ColorNode, LightNode, Program, Source, SourceNode
 use residual_render::scene_data::SceneData;
 use residual_render::texture::srgb_table;
 
+use super::environment_weights::EnvironmentWeights;
 use super::geometry::Geometry;
 use super::images::Images;
 use super::light_places;
 use super::light_places_gain::Emitter;
 use super::light_tree::{self, LightBounds, Reach};
 use super::light_tree_gain;
+use super::luminance::luminance;
 use super::options::{LightPicks, LightPlaces, PlanOptions};
 use super::planned::LightKindUse;
 use super::planned_materials::Materials;
 use super::punctual::Punctual;
-use crate::desc::{
-    ColorInput, EnvironmentDesc, ImageDesc, LightDesc, SceneDesc, SurfaceDesc, Texels, Wrap,
-};
+use crate::desc::{ColorInput, EnvironmentDesc, LightDesc, SceneDesc, SurfaceDesc, Texels, Wrap};
 use crate::sixteen_bits;
 
 /// The kinds of lights of a scene and how many there are of each.
@@ -93,7 +93,8 @@ pub(super) fn plan_lights(
         lights.add_punctual(light, radius, data);
     }
     if let Some(environment) = &scene.environment {
-        lights.add_environment(scene, environment, images, radius, data);
+        let is_found_otherwise = options.bsdf_samples_find_lights();
+        lights.add_environment(scene, environment, images, radius, is_found_otherwise, data);
     }
     if !scene.later.is_empty() {
         lights.stay_countable(data);
@@ -121,11 +122,6 @@ fn area(program: &Program, source: &ColorNode) -> LightNode {
             attributes: attributes.union(test.given_attributes()),
         },
     }
-}
-
-/// Luminance of a colour.
-fn luminance(c: [f32; 3]) -> f64 {
-    0.2126 * f64::from(c[0]) + 0.7152 * f64::from(c[1]) + 0.0722 * f64::from(c[2])
 }
 
 /// Mean luminance of an emission, texture included.
@@ -274,19 +270,18 @@ impl PlannedLights {
         environment: &EnvironmentDesc,
         images: &mut Images,
         radius: f64,
+        is_found_otherwise: bool,
         data: &mut SceneData,
     ) {
         let image = &scene.images[environment.image];
-        let weights = texel_weights(image);
-        let total: f64 = weights.iter().sum();
-        if total <= 0.0 || environment.strength <= 0.0 {
+        let weights = EnvironmentWeights::of(image);
+        if weights.mean() <= 0.0 || environment.strength <= 0.0 {
             return;
         }
         let index = self.powers.len() as u32;
         // The weights' mean is the mean of luminance·sin θ; ∫L dω = 2π²·that.
-        let mean = total / weights.len() as f64;
         self.environment =
-            2.0 * std::f64::consts::PI.powi(2) * mean * f64::from(environment.strength);
+            2.0 * std::f64::consts::PI.powi(2) * weights.mean() * f64::from(environment.strength);
         self.push_environment(scene, radius, data);
 
         let texels = images.environment(scene, environment.image);
@@ -300,7 +295,11 @@ impl PlannedLights {
             sin,
             light: index,
         };
-        light::set_environment(data, header, alias_entries(&weights, mean));
+        let weights = match is_found_otherwise {
+            true => weights.compensated(),
+            false => weights,
+        };
+        light::set_environment(data, header, weights.alias_entries());
     }
 
     fn push_environment(&mut self, scene: &SceneDesc, radius: f64, data: &mut SceneData) {
@@ -371,30 +370,4 @@ impl PlannedLights {
             light_places::set_by_solid_angle(&self.emitters, &mut self.kinds, data);
         }
     }
-}
-
-/// The integral of luminance over each texel of the bilinear image, times the sine of the row's angle: the image
-/// convolved with (1, 6, 1)/8 along both axes.
-fn texel_weights(image: &ImageDesc) -> Vec<f64> {
-    let (width, height) = (image.width as usize, image.height as usize);
-    let Texels::RgbaF32(texels) = &image.texels else {
-        unreachable!("environments are imported as floats")
-    };
-    let value = |x: usize, y: usize| {
-        let t = texels[y * width + x];
-        luminance([t[0], t[1], t[2]])
-    };
-    let mut weights = Vec::with_capacity(width * height);
-    for y in 0..height {
-        let rows = [y.saturating_sub(1), y, (y + 1).min(height - 1)];
-        let sin = (std::f64::consts::PI * (y as f64 + 0.5) / height as f64).sin();
-        for x in 0..width {
-            let columns = [(x + width - 1) % width, x, (x + 1) % width];
-            let row = |y: usize| {
-                (value(columns[0], y) + 6.0 * value(columns[1], y) + value(columns[2], y)) / 8.0
-            };
-            weights.push((row(rows[0]) + 6.0 * row(rows[1]) + row(rows[2])) / 8.0 * sin);
-        }
-    }
-    weights
 }

@@ -11,6 +11,7 @@ mod camera_choice;
 mod clip_distances;
 mod closed;
 mod coincident;
+mod environment_weights;
 mod equal_areas;
 mod error;
 mod explain;
@@ -25,6 +26,7 @@ mod light_tree_gain;
 #[cfg(test)]
 mod light_tree_tests;
 mod lights;
+mod luminance;
 mod materials;
 mod media;
 mod media_at_camera;

@@ -2,7 +2,7 @@
 
 use residual_render::layer::Layers;
 use residual_render::sampler::AnySampler;
-use residual_render::tracer::TracerNode;
+use residual_render::tracer::{AnyMis, TracerNode};
 
 use super::camera_choice::CameraChoice;
 use super::optics::Optics;
@@ -142,6 +142,14 @@ impl PlanOptions {
             }
             picks => picks,
         }
+    }
+
+    /// Whether what light samples miss is found by BSDF samples at full weight: in paths from the camera that weigh the two against each other.
+    pub(super) fn bsdf_samples_find_lights(&self) -> bool {
+        matches!(
+            self.tracer,
+            TracerNode::Path(AnyMis::PowerHeuristic | AnyMis::BalanceHeuristic)
+        )
     }
 
     /// Where light samples of the tracer lie on emitting triangles. Light leaves them evenly by area, which is what light paths are

@@ -2,10 +2,17 @@
 
 use std::path::Path;
 
+use residual_render::alias_table::AliasEntry;
+use residual_render::domain::Buffer;
+use residual_render::light::EnvironmentHeader;
+use residual_render::record::BufferRecord;
+use residual_render::tracer::{AnyMis, AnySharing, TracerNode};
+
 use crate::common;
 use crate::common::gltf_text::{Gltf, warns};
 use residual_scenegen::desc::Texels;
 use residual_scenegen::import::{EnvironmentOptions, ImportError, ImportOptions, import};
+use residual_scenegen::plan::{PlanOptions, plan};
 
 fn options(path: &Path) -> ImportOptions {
     let environment = EnvironmentOptions {
@@ -79,6 +86,40 @@ fn eight_bit_environments_are_decoded_from_srgb() {
         "{}",
         texels[0][1]
     );
+}
+
+/// Where BSDF samples find the sky as well, light samples go where it is brighter than its mean alone; where they do not share the
+/// work, each texel that shines is sampled.
+#[test]
+fn what_is_sampled_of_a_sky_depends_on_who_else_finds_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lamp.exr");
+    let texel = |x, y| if (x, y) == (3, 2) { 9.0_f32 } else { 0.5 };
+    exr::prelude::write_rgb_file(&path, 16, 8, |x, y| [texel(x, y); 3].into()).unwrap();
+    let scene = Gltf::square().import_with(&options(&path)).unwrap();
+    let sampled = |tracer| {
+        let options = PlanOptions {
+            tracer,
+            ..PlanOptions::default()
+        };
+        let plan = plan(&scene, &options).unwrap();
+        let words = plan.data.buffer(Buffer::Environment);
+        let entries = &words[EnvironmentHeader::WORDS as usize..];
+        let entries = entries.chunks_exact(AliasEntry::WORDS as usize);
+        let densities = entries.map(|entry| AliasEntry::from_words(entry).density);
+        densities.filter(|&density| density > 0.0).count()
+    };
+    for mis in [AnyMis::PowerHeuristic, AnyMis::BalanceHeuristic] {
+        // The lamp, and its neighbours, over which its bilinear image reaches.
+        assert_eq!(sampled(TracerNode::Path(mis)), 9, "{mis:?}");
+    }
+    for tracer in [
+        TracerNode::Path(AnyMis::LightsOnly),
+        TracerNode::Bidirectional(AnySharing::Combined),
+        TracerNode::Bidirectional(AnySharing::LightPathsOnly),
+    ] {
+        assert_eq!(sampled(tracer), 16 * 8, "{tracer:?}");
+    }
 }
 
 #[test]
