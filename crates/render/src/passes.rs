@@ -49,7 +49,7 @@ impl Default for RenderOptions {
             error: None,
             sampling: Sampling::Uniform,
             max_depth: 8,
-            roulette_from: 5,
+            roulette_from: 2,
             seed: 0,
             reach: f32::MAX,
         }

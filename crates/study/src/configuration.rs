@@ -182,7 +182,7 @@ pub const CONFIGURATIONS: &[Configuration] = {
         row("bsdf-only", Mis, "lights are found, not sampled", Quick, |s| s.mis(AnyMis::BsdfOnly)),
         row("by-power", Picks, "lights are picked by power", Quick, |s| s.plan.light_picks = LightPicks::Power),
         row("evenly", Picks, "each light as often as any other", Full, |s| s.plan.light_picks = LightPicks::Uniform),
-        row("roulette-2", Roulette, "from the 2nd vertex, not the 5th", Full, |s| s.render.roulette_from = 2),
+        row("roulette-5", Roulette, "from the 5th vertex, not the 2nd", Full, |s| s.render.roulette_from = 5),
         row("no-roulette", Roulette, "all paths go on to their 8th vertex", Quick, |s| s.render.roulette_from = u32::MAX),
         row("depth-2", Depth, "2 vertices: direct light", Quick, |s| s.render.max_depth = 2),
         row("depth-4", Depth, "4 vertices", Quick, |s| s.render.max_depth = 4),
