@@ -79,7 +79,7 @@ class Renderer:
         self.drjit = drjit
         self.folder = folder
         self.is_jit = not variant.startswith("scalar")
-        self.scene = mitsuba.load_file(os.path.join(folder, "scene.xml"))
+        self.scene = mitsuba.load_file(os.path.join(folder, "scene.xml"), parallel=False)
         self.sensors = {}
         self.warm = set()
 
@@ -127,9 +127,14 @@ def main():
     if variant is None:
         answer({"missing": "; ".join(problems)})
         return 1
-    drjit.set_thread_count(threads or os.cpu_count())
     mitsuba.set_log_level(mitsuba.LogLevel.Error)
+    import mitsuba_coat
+
+    mitsuba_coat.register()
+    # A thread that reads an EXR file waits for others: one alone waits for ever.
+    drjit.set_thread_count(2)
     renderer = Renderer(mitsuba, drjit, folder, variant)
+    drjit.set_thread_count(threads or os.cpu_count())
     answer(
         {
             "renderer": "Mitsuba",

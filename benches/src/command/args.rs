@@ -46,6 +46,9 @@ pub(super) struct ErrorArgs {
     /// glTF (.gltf, .glb) or OBJ file; may be given more than once [default: those in scenes/]
     #[arg(long, value_name = "FILE")]
     pub(super) scene: Vec<PathBuf>,
+    /// Environment image (.hdr, .exr, .png), latitude-longitude; without one, scenes without a light stand in the studio
+    #[arg(long, value_name = "FILE")]
+    pub(super) env: Option<PathBuf>,
     /// One JSON object a line on standard output
     #[arg(long)]
     pub(super) json: bool,

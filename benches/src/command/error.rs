@@ -15,8 +15,8 @@ use residual_frontend::{hierarchy_quality, output};
 use residual_render::sampler::AnySampler;
 use residual_render::texture::srgb_code;
 use residual_scenegen::desc::SceneDesc;
-use residual_scenegen::import::{ImportOptions, import};
-use residual_scenegen::plan::{CullingRule, Plan, PlanOptions, plan};
+use residual_scenegen::import::{EnvironmentOptions, ImportOptions, import};
+use residual_scenegen::plan::{BodyRule, CullingRule, Plan, PlanOptions, plan};
 
 use super::args::{ErrorArgs, PeerArg, TierArg};
 use super::scenes::scenes_or_own;
@@ -33,7 +33,7 @@ pub(super) fn run(args: &ErrorArgs) -> Result<()> {
 }
 
 fn measure(path: &Path, args: &ErrorArgs) -> Result<()> {
-    let scene = import(path, &ImportOptions::default())?;
+    let scene = lit_scene(path, args.env.as_deref())?;
     let samples: Vec<u32> = BTreeSet::from_iter(args.spp.iter().copied())
         .into_iter()
         .collect();
@@ -80,12 +80,31 @@ fn measure(path: &Path, args: &ErrorArgs) -> Result<()> {
     report(name, &all, args)
 }
 
-/// As in [`mitsuba`] where both sides of every surface block light.
+/// A scene as the command line lights it: by an environment, if there is one, and in the studio where nothing else shines.
+fn lit_scene(path: &Path, environment: Option<&Path>) -> Result<SceneDesc> {
+    let environment = environment.map(|path| EnvironmentOptions {
+        path: path.to_owned(),
+        strength: 1.0,
+        rotation_degrees: 0.0,
+    });
+    let options = ImportOptions {
+        environment,
+        ..ImportOptions::default()
+    };
+    let mut scene = import(path, &options)?;
+    if scene.is_unlit() {
+        scene.add_studio();
+    }
+    Ok(scene)
+}
+
+/// As in [`mitsuba`], where both sides of every surface block light, and whoever leaves a body is outside.
 fn plan_options(sampler: AnySampler, args: &ErrorArgs) -> PlanOptions {
     PlanOptions {
         size: args.size.0,
         sampler,
         culling: CullingRule::None,
+        bodies: BodyRule::Beside,
         ..PlanOptions::default()
     }
 }

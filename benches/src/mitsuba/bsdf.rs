@@ -6,23 +6,31 @@ use residual_render::program::{
 };
 use residual_render::texture::Input;
 
+use super::coat::albedos;
+use super::opacity::masked;
+use super::shapes::has_two_uv_sets;
+use super::textures::Textures;
 use super::xml::Element;
 
-/// The BSDF of a program whose numbers are constants.
+/// The BSDF of a program whose numbers are constants, and its test of alpha.
 ///
 /// # Errors
 /// What of it has no counterpart.
-pub(super) fn bsdf(program: &Program) -> Result<Element, String> {
-    if program.alpha_test.is_some() {
-        return Err("alpha".to_owned());
-    }
+pub(super) fn bsdf(program: &Program, textures: &mut Textures<'_>) -> Result<Element, String> {
     if program.normal.is_some() {
         return Err("a normal map".to_owned());
     }
-    Inputs(program).bsdf(&program.bsdf)
+    if has_two_uv_sets(program) {
+        return Err("textures over two sets of coordinates".to_owned());
+    }
+    let bsdf = Inputs(program).bsdf(&program.bsdf, textures)?;
+    match &program.alpha_test {
+        Some(test) => masked(bsdf, test, textures),
+        None => Ok(bsdf),
+    }
 }
 
-/// The radiance that both sides or, as Mitsuba has it, only the front of a surface emits; `None` if there is none.
+/// The radiance that a surface emits; `None` if there is none.
 ///
 /// # Errors
 /// What of it has no counterpart.
@@ -30,16 +38,37 @@ pub(super) fn emission(program: &Program) -> Result<Option<[f32; 3]>, String> {
     let Some(emission) = program.emission else {
         return Ok(None);
     };
-    if emission.double_sided {
-        return Err("emission from both sides".to_owned());
-    }
-    Inputs(program).color(emission.radiance).map(Some)
+    Inputs(program).constant(emission.radiance).map(Some)
 }
+
+/// Mitsuba's facets are no smoother.
+const LEAST_ALPHA: f32 = 1e-4;
 
 struct Inputs<'a>(&'a Program);
 
 impl Inputs<'_> {
-    fn color(&self, Input(index): Input) -> Result<[f32; 3], String> {
+    /// A colour of a BSDF under the name that it has there.
+    fn color(
+        &self,
+        name: &str,
+        Input(index): Input,
+        textures: &mut Textures<'_>,
+    ) -> Result<Element, String> {
+        let input = &self.0.inputs[index];
+        match &input.source {
+            SourceNode::Color(ColorNode::Const(value)) => Ok(Element::color(name, *value)),
+            SourceNode::Color(ColorNode::Image(image)) => textures.color(name, [1.0; 3], image),
+            SourceNode::Color(ColorNode::Product(factor, image)) => match (&**factor, &**image) {
+                (ColorNode::Const(factor), ColorNode::Image(image)) => {
+                    textures.color(name, *factor, image)
+                }
+                _ => Err(format!("vertex colours or more for {:?}", input.name)),
+            },
+            _ => Err(format!("vertex colours or more for {:?}", input.name)),
+        }
+    }
+
+    fn constant(&self, Input(index): Input) -> Result<[f32; 3], String> {
         let input = &self.0.inputs[index];
         match &input.source {
             SourceNode::Color(ColorNode::Const(value)) => Ok(*value),
@@ -56,11 +85,9 @@ impl Inputs<'_> {
     }
 
     /// Reflectance at normal and at grazing incidence.
-    fn fresnel(&self, node: &FresnelNode) -> Result<([f32; 3], f32), String> {
+    fn fresnel(&self, node: &FresnelNode) -> Result<(Input, f32), String> {
         match node {
-            FresnelNode::Schlick { normal, grazing } => {
-                Ok((self.color(*normal)?, self.number(*grazing)?))
-            }
+            FresnelNode::Schlick { normal, grazing } => Ok((*normal, self.number(*grazing)?)),
             FresnelNode::ThinFilm { .. } => Err("a thin film".to_owned()),
         }
     }
@@ -72,39 +99,41 @@ impl Inputs<'_> {
         }
     }
 
-    fn bsdf(&self, node: &BsdfNode) -> Result<Element, String> {
+    fn bsdf(&self, node: &BsdfNode, textures: &mut Textures<'_>) -> Result<Element, String> {
+        let mut color = |name: &str, input: &Input| self.color(name, *input, textures);
         match node {
-            BsdfNode::Black => Ok(both_sides(diffuse([0.0; 3]))),
-            BsdfNode::Diffuse { albedo } => Ok(both_sides(diffuse(self.color(*albedo)?))),
+            BsdfNode::Black => Ok(both_sides(diffuse(Element::color("reflectance", [0.0; 3])))),
+            BsdfNode::Diffuse { albedo } => Ok(both_sides(diffuse(color("reflectance", albedo)?))),
             BsdfNode::Mirror { reflectance } => {
                 let mirror = Element::plugin("bsdf", "conductor").string("material", "none");
-                let reflectance = self.color(*reflectance)?;
-                Ok(both_sides(mirror.rgb("specular_reflectance", reflectance)))
+                let reflectance = color("specular_reflectance", reflectance)?;
+                Ok(both_sides(mirror.child(reflectance)))
             }
             // Fresnel as Schlick has it, GGX with α = roughness², visible normals: the same formulas, but for what facets
             // throw at one another.
             BsdfNode::Glossy { fresnel, roughness } => {
-                let (color, _) = self.fresnel(fresnel)?;
+                let (normal, _) = self.fresnel(fresnel)?;
                 Ok(both_sides(
                     Element::plugin("bsdf", "principled")
-                        .rgb("base_color", color)
+                        .child(color("base_color", &normal)?)
                         .float("roughness", self.roughness(roughness)?)
                         .float("metallic", 1),
                 ))
             }
             BsdfNode::Coated { coat, base } => match (&**coat, &**base) {
                 (BsdfNode::Glossy { fresnel, roughness }, BsdfNode::Diffuse { albedo }) => {
-                    let ([r, g, b], grazing) = self.fresnel(fresnel)?;
+                    let (normal, grazing) = self.fresnel(fresnel)?;
+                    let [r, g, b] = self.constant(normal)?;
                     if r != g || g != b || grazing != 1.0 {
                         return Err("a tinted or weakened coat".to_owned());
                     }
-                    // Disney's coat and base are close to ours, but not the same: Fresnel's formula instead of Schlick's,
-                    // and a base that throws some light back at grazing angles. Specular 1 reflects 8 %.
+                    let base = color("base_color", albedo)?;
                     Ok(both_sides(
-                        Element::plugin("bsdf", "principled")
-                            .rgb("base_color", self.color(*albedo)?)
-                            .float("roughness", self.roughness(roughness)?)
-                            .float("specular", r / 0.08),
+                        Element::plugin("bsdf", "coat")
+                            .child(base)
+                            .float("alpha", self.roughness(roughness)?.powi(2).max(LEAST_ALPHA))
+                            .float("normal", r)
+                            .string("albedo", &albedos(self.0, coat, textures.point())),
                     ))
                 }
                 _ => Err("a coat on what is not matte".to_owned()),
@@ -116,7 +145,7 @@ impl Inputs<'_> {
             } => Ok(Element::plugin("bsdf", "dielectric")
                 .float("int_ior", self.number(*ior)?)
                 .float("ext_ior", 1)
-                .rgb("specular_transmittance", self.color(*transmittance)?)),
+                .child(color("specular_transmittance", transmittance)?)),
             BsdfNode::Dielectric {
                 interface: AnyInterface::Thin,
                 ..
@@ -141,7 +170,7 @@ impl Inputs<'_> {
                 .float("alpha", self.roughness(roughness)?.powi(2))
                 .float("int_ior", self.number(*ior)?)
                 .float("ext_ior", 1)
-                .rgb("specular_transmittance", self.color(*transmittance)?)),
+                .child(color("specular_transmittance", transmittance)?)),
             BsdfNode::RoughDiffuse { .. } => Err("rough diffuse reflection".to_owned()),
             BsdfNode::DiffuseTransmission { .. } => Err("diffuse transmission".to_owned()),
             BsdfNode::Sheen { .. } => Err("sheen".to_owned()),
@@ -152,8 +181,8 @@ impl Inputs<'_> {
     }
 }
 
-fn diffuse(reflectance: [f32; 3]) -> Element {
-    Element::plugin("bsdf", "diffuse").rgb("reflectance", reflectance)
+fn diffuse(reflectance: Element) -> Element {
+    Element::plugin("bsdf", "diffuse").child(reflectance)
 }
 
 /// Ours scatter on both sides, Mitsuba's on the front unless they are told.

@@ -13,7 +13,10 @@ use residual_scenegen::desc::{LightDesc, PunctualKind, SceneDesc};
 use residual_scenegen::plan::{Binding, Plan, PlanOptions, plan};
 
 use super::bsdf::{bsdf, emission};
+use super::environment::environment;
+use super::raster::Rasters;
 use super::shapes::{Shape, shapes};
+use super::textures::Textures;
 use super::xml::Element;
 
 /// The scene without its sensor, in the folder that [`export`] fills.
@@ -50,18 +53,22 @@ pub fn export(
         "the scene has bodies that absorb, scatter, disperse or lie within each other, which are not exported to Mitsuba"
     );
     let shapes = shapes(&plan);
+    let buffers = plan.data.buffers();
+    let mut rasters = Rasters::default();
     let mut elements = Vec::new();
     for (index, shape) in shapes.iter().enumerate() {
         let file = format!("{index}.ply");
         let path = folder.join(&file);
         fs::write(&path, shape.mesh.bytes()).with_context(|| path.display().to_string())?;
         let name = &scene.materials[shape.material].name;
-        let element = shape_element(shape, &file).map_err(|lacking| {
+        let mut textures = Textures::new(&plan.data, &buffers, shape.triangle, &mut rasters);
+        let element = shape_element(shape, &file, &mut textures).map_err(|lacking| {
             anyhow::anyhow!("material {name:?} has {lacking}, which is not exported to Mitsuba")
         })?;
         elements.push(element);
     }
-    let emitters = emitters(scene, &plan)?;
+    let emitters = emitters(scene, &plan, &mut rasters)?;
+    rasters.write(folder)?;
     let emits = |shape: &&Shape<'_>| shape.program.emission.is_some();
     let exported = Exported {
         shapes: shapes.len(),
@@ -85,31 +92,30 @@ fn write_xml(path: &Path, root: &Element) -> Result<()> {
     fs::write(path, root.to_string()).with_context(|| path.display().to_string())
 }
 
-fn shape_element(shape: &Shape<'_>, file: &str) -> Result<Element, String> {
+fn shape_element(
+    shape: &Shape<'_>,
+    file: &str,
+    textures: &mut Textures<'_>,
+) -> Result<Element, String> {
     let mut element = Element::plugin("shape", "ply").string("filename", file);
     if !shape.program.attributes.normals {
         element = element.enabled("face_normals");
     }
-    element = element.child(bsdf(shape.program)?);
+    element = element.child(bsdf(shape.program, textures)?);
     let emission = emission(shape.program)?;
     let area = |radiance| Element::plugin("emitter", "area").rgb("radiance", radiance);
     Ok(element.children(emission.map(area)))
 }
 
 /// The lights that are no surfaces.
-fn emitters(scene: &SceneDesc, plan: &Plan) -> Result<Vec<Element>> {
+fn emitters(scene: &SceneDesc, plan: &Plan, rasters: &mut Rasters) -> Result<Vec<Element>> {
     let mut emitters = scene
         .lights
         .iter()
         .map(punctual)
         .collect::<Result<Vec<_>>>()?;
     if plan.structure.lights.contains(&LightNode::Environment) {
-        ensure!(
-            scene.environment.is_none(),
-            "the scene has an environment, which is not exported to Mitsuba"
-        );
-        // The sky of scenes without a light.
-        emitters.push(Element::plugin("emitter", "constant").rgb("radiance", [1.0; 3]));
+        emitters.push(environment(&plan.data, rasters));
     }
     Ok(emitters)
 }

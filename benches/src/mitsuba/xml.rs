@@ -50,9 +50,22 @@ impl Element {
         self
     }
 
-    /// With a colour, linear Rec. 709.
-    pub(super) fn rgb(self, name: &str, [r, g, b]: [f32; 3]) -> Self {
-        self.child(Self::property("rgb", name, format_args!("{r}, {g}, {b}")))
+    /// A colour, linear Rec. 709.
+    pub(super) fn color(name: &str, [r, g, b]: [f32; 3]) -> Self {
+        Self::property("rgb", name, format_args!("{r}, {g}, {b}"))
+    }
+
+    /// A transform by a matrix, whose rows are given.
+    pub(super) fn matrix(name: &str, rows: [[f32; 3]; 3]) -> Self {
+        let numbers = rows.as_flattened().iter().map(f32::to_string);
+        let numbers = numbers.collect::<Vec<_>>().join(" ");
+        let matrix = Self::new("matrix").attribute("value", numbers);
+        Self::new("transform").attribute("name", name).child(matrix)
+    }
+
+    /// With a colour.
+    pub(super) fn rgb(self, name: &str, color: [f32; 3]) -> Self {
+        self.child(Self::color(name, color))
     }
 
     /// With a number.
