@@ -20,8 +20,9 @@ class Coat(mi.BSDF):
         self.base_color = props.get_texture("base_color", 0.5)
         self.normal = mi.Float(props["normal"])
         self.facets = mi.MicrofacetDistribution(mi.MicrofacetType.GGX, props["alpha"])
-        self.albedos = mi.Float([float(number) for number in props["albedo"].split()])
-        self.last = len(props["albedo"].split()) - 1
+        albedos = [float(number) for number in props["albedo"].split()]
+        self.albedos = mi.Float(albedos) if dr.is_jit_v(mi.Float) else albedos
+        self.last = len(albedos) - 1
         base = mi.BSDFFlags.DiffuseReflection | mi.BSDFFlags.FrontSide
         coat = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
         self.m_components = [base, coat]
@@ -30,8 +31,12 @@ class Coat(mi.BSDF):
     def coat_albedo(self, cos):
         place = dr.clip(cos, 0, 1) * self.last
         index = dr.minimum(mi.UInt32(place), self.last - 1)
-        low, high = (dr.gather(mi.Float, self.albedos, index + k) for k in (0, 1))
-        return dr.lerp(low, high, place - index)
+        return dr.lerp(self.tabulated(index), self.tabulated(index + 1), place - index)
+
+    def tabulated(self, index):
+        if dr.is_jit_v(mi.Float):
+            return dr.gather(mi.Float, self.albedos, index)
+        return self.albedos[index]
 
     def layers(self, si, active):
         """The base's colour, what the coat leaves, and how often it is sampled."""
@@ -73,7 +78,7 @@ class Coat(mi.BSDF):
         glossy, diffuse = (mi.UInt32(+flag) for flag in (mi.BSDFFlags.GlossyReflection, mi.BSDFFlags.DiffuseReflection))
         bs.sampled_type = dr.select(is_coat, glossy, diffuse)
         active &= bs.pdf > 0
-        return bs, dr.select(active, value / bs.pdf, 0)
+        return bs, dr.select(active, value / dr.maximum(bs.pdf, 1e-30), 0)
 
     def to_string(self):
         return "Coat[]"

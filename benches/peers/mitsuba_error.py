@@ -2,7 +2,7 @@
 
     python3 mitsuba_error.py FOLDER THREADS [VARIANT]
 
-FOLDER has scene.xml and sensor.xml, as residual-benches exports them; 0 threads are one for each processor. The first line of
+FOLDER has scene.xml and sensor.xml, as residual-benches exports them, with the BSDF of mitsuba_coat.py; 0 threads are one for each processor. The first line of
 standard output says who renders:
 
     {"renderer": "Mitsuba", "version": "3.9.1", "variant": "llvm_ad_rgb", "samplers": ["independent", ...], "notes": [...]}

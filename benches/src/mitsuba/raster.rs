@@ -41,20 +41,6 @@ impl Raster {
         };
         write(path, &picture).with_context(|| path.display().to_string())
     }
-
-    /// The numbers at a column and a row, one for each channel.
-    #[cfg(test)]
-    pub(super) fn at(&self, x: u32, y: u32) -> Vec<f32> {
-        let index = (y * self.size[0] + x) as usize;
-        let channels = self.channels.iter();
-        channels.map(|(_, values)| values[index]).collect()
-    }
-
-    /// Columns and rows.
-    #[cfg(test)]
-    pub(super) fn size(&self) -> [u32; 2] {
-        self.size
-    }
 }
 
 fn places([width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
@@ -80,11 +66,6 @@ impl Rasters {
     pub(super) fn write(self, folder: &Path) -> Result<()> {
         let mut rasters = self.0.into_iter().enumerate();
         rasters.try_for_each(|(index, raster)| raster.write(&folder.join(format!("{index}.exr"))))
-    }
-
-    #[cfg(test)]
-    pub(super) fn all(&self) -> &[Raster] {
-        &self.0
     }
 }
 
