@@ -6,7 +6,6 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use glam::Vec3;
 use residual_render::camera::CameraRecord;
-use residual_render::passes::RenderOptions;
 use residual_render::program::{CameraNode, LightNode};
 use residual_render::tracer::Between;
 use residual_scenegen::desc::{LightDesc, PunctualKind, SceneDesc};
@@ -74,10 +73,11 @@ pub fn export(
         shapes: shapes.len(),
         lights: shapes.iter().filter(emits).count() + emitters.len(),
     };
-    // Both count the camera's own vertex out, the light's in; roulette begins at the same vertex.
+    // Both count the camera's own vertex out, the light's in. Roulette begins where Mitsuba has it by itself: from the second vertex on, as ours,
+    // it would lose efficiency, since it ends paths that are worth less than what they began with.
     let integrator = Element::plugin("integrator", "path")
         .integer("max_depth", max_depth)
-        .integer("rr_depth", RenderOptions::default().roulette_from);
+        .integer("rr_depth", 5);
     let root = Element::new("scene")
         .attribute("version", "3.0.0")
         .child(integrator)

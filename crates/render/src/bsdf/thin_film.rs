@@ -70,63 +70,57 @@ fn sensitivity<D: Domain>(d: D, path: D::F, half_turns: Vec3<D::F>) -> Color<D::
     rgb_of_xyz(d, xyz)
 }
 
-impl<N, G, W, I, T> ThinFilm<N, G, W, I, T> {
-    #[inline(always)]
-    fn film<D: Domain>(
-        &self,
-        d: D,
-        surface: &Surface<D>,
-        cos: D::F,
-        base: Color<D::F>,
-    ) -> Color<D::F>
-    where
-        I: ScalarSource<D>,
-        T: ScalarSource<D>,
-    {
-        let (zero, one) = (d.lit(0.0), d.lit(1.0));
-        let thickness = self.thickness.scalar(d, surface);
-        let t = d.min(thickness * d.lit(1.0 / FADING), one);
-        let fade = t * t * d.fma(d.lit(-2.0), t, d.lit(3.0));
-        let ior = d.fma(fade, self.ior.scalar(d, surface) - one, one);
-        // Snell's law: the cosine in the film.
-        let sin2 = (one - cos * cos) / (ior * ior);
-        let cos_film = d.sqrt(d.max(one - sin2, zero));
-        let first = at_normal(d, ior, one);
-        let first = d.fma(one - first, schlick_weight(d, cos), first);
-        let passes = one - first;
-        // The base's index of refraction, from its reflectance.
-        let base_ior = base.map(|f| {
-            let root = d.sqrt(d.min(d.max(f, zero), d.lit(0.9999)));
-            (one + root) / (one - root)
-        });
-        let weight = schlick_weight(d, cos_film);
-        let second = base_ior.map(|beyond| {
-            let f = at_normal(d, beyond, ior);
-            d.fma(one - f, weight, f)
-        });
-        // Light loses half a turn where it is reflected by what is denser: on the first interface from within, none.
-        let half_turns = base_ior.map(|beyond| {
-            let second = d.select(d.lt(beyond, ior), one, zero);
-            second + one
-        });
-        let both = second.map(|f| d.min(d.max(first * f, d.lit(1e-5)), d.lit(0.9999)));
-        let amplitude = both.map(|r| d.sqrt(r));
-        let series = Vec3 {
-            x: passes * passes * second.x / (one - both.x),
-            y: passes * passes * second.y / (one - both.y),
-            z: passes * passes * second.z / (one - both.z),
-        };
-        let path = d.lit(2.0) * ior * thickness * cos_film;
-        let mut sum = series.map(|s| s + first);
-        let mut order = series.map(|s| s - passes);
-        for m in 1..=2 {
-            let m = d.lit(f64::from(m));
-            order = order * amplitude;
-            sum = sum + order * sensitivity(d, path * m, half_turns.scale(m));
-        }
-        // Colours out of gamut are clipped.
-        sum.map(|c| d.min(d.max(c, zero), one))
-    }
+/// The reflectance of a film of this thickness, in nanometres, and index of refraction over a base of this reflectance at normal
+/// incidence.
+#[inline(never)]
+fn film<D: Domain>(d: D, thickness: D::F, ior: D::F, cos: D::F, base: Color<D::F>) -> Color<D::F> {
+    d.vectorize(
+        #[inline(always)]
+        || {
+            let (zero, one) = (d.lit(0.0), d.lit(1.0));
+            let t = d.min(thickness * d.lit(1.0 / FADING), one);
+            let fade = t * t * d.fma(d.lit(-2.0), t, d.lit(3.0));
+            let ior = d.fma(fade, ior - one, one);
+            // Snell's law: the cosine in the film.
+            let sin2 = (one - cos * cos) / (ior * ior);
+            let cos_film = d.sqrt(d.max(one - sin2, zero));
+            let first = at_normal(d, ior, one);
+            let first = d.fma(one - first, schlick_weight(d, cos), first);
+            let passes = one - first;
+            // The base's index of refraction, from its reflectance.
+            let base_ior = base.map(|f| {
+                let root = d.sqrt(d.min(d.max(f, zero), d.lit(0.9999)));
+                (one + root) / (one - root)
+            });
+            let weight = schlick_weight(d, cos_film);
+            let second = base_ior.map(|beyond| {
+                let f = at_normal(d, beyond, ior);
+                d.fma(one - f, weight, f)
+            });
+            // Light loses half a turn where it is reflected by what is denser: on the first interface from within, none.
+            let half_turns = base_ior.map(|beyond| {
+                let second = d.select(d.lt(beyond, ior), one, zero);
+                second + one
+            });
+            let both = second.map(|f| d.min(d.max(first * f, d.lit(1e-5)), d.lit(0.9999)));
+            let amplitude = both.map(|r| d.sqrt(r));
+            let series = Vec3 {
+                x: passes * passes * second.x / (one - both.x),
+                y: passes * passes * second.y / (one - both.y),
+                z: passes * passes * second.z / (one - both.z),
+            };
+            let path = d.lit(2.0) * ior * thickness * cos_film;
+            let mut sum = series.map(|s| s + first);
+            let mut order = series.map(|s| s - passes);
+            for m in 1..=2 {
+                let m = d.lit(f64::from(m));
+                order = order * amplitude;
+                sum = sum + order * sensitivity(d, path * m, half_turns.scale(m));
+            }
+            // Colours out of gamut are clipped.
+            sum.map(|c| d.min(d.max(c, zero), one))
+        },
+    )
 }
 
 impl<D, N, G, W, I, T> Fresnel<D> for ThinFilm<N, G, W, I, T>
@@ -144,7 +138,11 @@ where
             normal: self.normal.color(d, surface),
             grazing: Vec3::splat(self.grazing.scalar(d, surface)),
         };
-        let film = self.film(d, surface, cos, base.normal);
+        let [thickness, ior] = [
+            self.thickness.scalar(d, surface),
+            self.ior.scalar(d, surface),
+        ];
+        let film = film(d, thickness, ior, cos, base.normal);
         base.at(d, cos).lerp(film, self.strength.scalar(d, surface))
     }
 

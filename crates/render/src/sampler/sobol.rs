@@ -10,16 +10,23 @@ use crate::domain::Domain;
 pub struct Sobol;
 
 impl<D: Domain> Sampler<D> for Sobol {
-    #[inline(always)]
+    /// Never inlined: all vertices and programs of a scene share one copy, of which there would be five in each program, and which is
+    /// long enough not to notice the call.
+    #[inline(never)]
     fn pair(&self, d: D, key: SampleKey<D::U>, dimension: D::U) -> [D::F; 2] {
-        let seed = hash(d, key.pixel ^ hash(d, dimension));
-        let reversed = d.reverse_bits(key.index);
-        let shuffled = d.reverse_bits(owen(d, reversed, seed));
-        // Scrambling works on reversed bits and Sobol's first dimension is the index with its bits reversed:
-        // two of the reversals cancel, in both dimensions.
-        let x = d.reverse_bits(owen(d, shuffled, hash(d, seed + d.uint(1))));
-        let y = d.reverse_bits(owen(d, pascal(d, shuffled), hash(d, seed + d.uint(2))));
-        [unit(d, x), unit(d, y)]
+        d.vectorize(
+            #[inline(always)]
+            || {
+                let seed = hash(d, key.pixel ^ hash(d, dimension));
+                let reversed = d.reverse_bits(key.index);
+                let shuffled = d.reverse_bits(owen(d, reversed, seed));
+                // Scrambling works on reversed bits and Sobol's first dimension is the index with its bits reversed:
+                // two of the reversals cancel, in both dimensions.
+                let x = d.reverse_bits(owen(d, shuffled, hash(d, seed + d.uint(1))));
+                let y = d.reverse_bits(owen(d, pascal(d, shuffled), hash(d, seed + d.uint(2))));
+                [unit(d, x), unit(d, y)]
+            },
+        )
     }
 }
 
