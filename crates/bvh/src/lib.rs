@@ -165,6 +165,7 @@ mod bounds;
 mod build;
 mod dispatch;
 mod filter;
+mod inlined;
 mod instances;
 mod layout;
 mod look_up;

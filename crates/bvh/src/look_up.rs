@@ -1,5 +1,6 @@
 //! Numbers looked up in registers: each lane's of three tables, as a compact packet's corners are of its vertices.
 
+use crate::inlined::inlined;
 use fearless_simd::prelude::*;
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::{Avx512, u16x16};
@@ -34,8 +35,19 @@ macro_rules! through_memory {
             tables: [$float<S>; 3],
             indices: &[u16; $n],
         ) -> [[$float<S>; 3]; 3] {
-            let found = look_up(tables.map(|table| table.into()), indices);
-            found.map(|corner| corner.map(|row| $float::load_array(simd, row)))
+            let [x, y, z] = tables;
+            let corner = inlined(
+                #[inline(always)]
+                |[x, y, z]: [[f32; $n]; 3]| {
+                    [
+                        $float::load_array(simd, x),
+                        $float::load_array(simd, y),
+                        $float::load_array(simd, z),
+                    ]
+                },
+            );
+            let [a, b, c] = look_up([x.into(), y.into(), z.into()], indices);
+            [corner(a), corner(b), corner(c)]
         }
 
         #[inline(always)]
@@ -61,15 +73,34 @@ pub(crate) fn look_up_16<S: Simd>(
 ) -> [[f32x16<S>; 3]; 3] {
     #[cfg(target_arch = "x86_64")]
     if let Some(avx512) = simd.level().as_avx512() {
-        let number = |table: f32x16<S>| f32x16::load_array(avx512, table.into());
+        let number = inlined(
+            #[inline(always)]
+            |table: f32x16<S>| f32x16::load_array(avx512, table.into()),
+        );
         let indices = u16x16::load_array(avx512, *indices);
         let [a, b, c] = permute(avx512, number(x), number(y), number(z), indices);
-        let number = |found: f32x16<Avx512>| f32x16::load_array(simd, found.into());
-        let corner = |[x, y, z]: [f32x16<Avx512>; 3]| [number(x), number(y), number(z)];
+        let number = inlined(
+            #[inline(always)]
+            |found: f32x16<Avx512>| f32x16::load_array(simd, found.into()),
+        );
+        let corner = inlined(
+            #[inline(always)]
+            |[x, y, z]: [f32x16<Avx512>; 3]| [number(x), number(y), number(z)],
+        );
         return [corner(a), corner(b), corner(c)];
     }
-    let found = look_up([x.into(), y.into(), z.into()], indices);
-    found.map(|corner| corner.map(|row| f32x16::load_array(simd, row)))
+    let corner = inlined(
+        #[inline(always)]
+        |[x, y, z]: [[f32; 16]; 3]| {
+            [
+                f32x16::load_array(simd, x),
+                f32x16::load_array(simd, y),
+                f32x16::load_array(simd, z),
+            ]
+        },
+    );
+    let [a, b, c] = look_up([x.into(), y.into(), z.into()], indices);
+    [corner(a), corner(b), corner(c)]
 }
 
 // Written out, since calls of closures would be calls.

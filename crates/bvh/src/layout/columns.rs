@@ -4,6 +4,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4};
 
 use crate::bounds::Bounds;
+use crate::inlined::{each, inlined};
 use crate::layout::class::{Class, ordered};
 use crate::ray::{Ray, interval};
 use crate::simd::Width;
@@ -79,12 +80,22 @@ impl<const R: usize> Columns<R> {
         let uniform = |lanes: u32| (lanes == 0 || lanes == all).then_some(lanes != 0);
 
         let largest = simd.splat(f32::MAX);
-        let load = |column: &[f32; R]| simd.load(column);
-        let size = [0, 1, 2].map(|axis| simd.abs(load(&self.dir[axis])));
-        let finite = |size: S::Float| simd.bits(simd.le(size, largest));
+        let load = inlined(
+            #[inline(always)]
+            |column: &[f32; R]| simd.load(column),
+        );
+        let size = each(
+            [0, 1, 2_usize],
+            #[inline(always)]
+            |axis| simd.abs(load(&self.dir[axis])),
+        );
+        let finite = inlined(
+            #[inline(always)]
+            |size: S::Float| simd.bits(simd.le(size, largest)),
+        );
         let mut valid = simd.bits(simd.le(load(&self.tmin), load(&self.tmax)));
-        for (&size, org) in size.iter().zip(&self.org) {
-            valid &= finite(size) & finite(simd.abs(load(org)));
+        for axis in 0..3 {
+            valid &= finite(size[axis]) & finite(simd.abs(load(&self.org[axis])));
         }
         let longest = simd.max_number(simd.max_number(size[0], size[1]), size[2]);
         valid &= simd.bits(simd.le(simd.splat(f32::MIN_POSITIVE), longest));
@@ -92,14 +103,20 @@ impl<const R: usize> Columns<R> {
             return None;
         }
 
-        let not_less = |a: usize, b: usize| simd.bits(simd.le(size[b], size[a]));
+        let not_less = inlined(
+            #[inline(always)]
+            |a: usize, b: usize| simd.bits(simd.le(size[b], size[a])),
+        );
         let greatest = if uniform(not_less(2, 0) & not_less(2, 1))? {
             2
         } else {
             usize::from(uniform(not_less(1, 0))?)
         };
         let zero = simd.splat(0.0);
-        let negative = |axis: usize| uniform(simd.bits(simd.lt(load(&self.dir[axis]), zero)));
+        let negative = inlined(
+            #[inline(always)]
+            |axis: usize| uniform(simd.bits(simd.lt(load(&self.dir[axis]), zero))),
+        );
         let octant = [negative(0)?, negative(1)?, negative(2)?];
         Some(Class {
             octant,
@@ -111,7 +128,10 @@ impl<const R: usize> Columns<R> {
     #[inline(always)]
     pub(crate) fn is_moderate<S: Width<R>>(&self, simd: S) -> bool {
         let largest = simd.splat(Bounds::MODERATE);
-        let is_moderate = |row: &[f32; R]| simd.bits(simd.lt(simd.abs(simd.load(row)), largest));
+        let is_moderate = inlined(
+            #[inline(always)]
+            |row: &[f32; R]| simd.bits(simd.lt(simd.abs(simd.load(row)), largest)),
+        );
         let [x, y, z] = &self.org;
         is_moderate(x) & is_moderate(y) & is_moderate(z) == u32::MAX >> (32 - R)
     }
@@ -132,7 +152,10 @@ impl<const R: usize> Columns<R> {
 #[inline(always)]
 fn transposed<S: Simd>(simd: S, rows: [[f32; 4]; 4]) -> [[f32; 4]; 4] {
     let [a, b, c, d] = rows;
-    let row = |row: [f32; 4]| f32x4::load_array(simd, row);
+    let row = inlined(
+        #[inline(always)]
+        |row: [f32; 4]| f32x4::load_array(simd, row),
+    );
     let (a, b, c, d) = (row(a), row(b), row(c), row(d));
     let (low, high) = ((a.zip_low(c), b.zip_low(d)), (a.zip_high(c), b.zip_high(d)));
     [

@@ -1,6 +1,7 @@
 //! The shear test with fused operations throughout.
 
 use crate::filter::Culling;
+use crate::inlined::{each, inlined};
 use crate::layout::packet::Packet;
 use crate::precision::ending::Ending;
 use crate::precision::interval::{highest, lowest, product};
@@ -44,14 +45,25 @@ impl Test for Fast {
         culling: Culling,
     ) -> u32 {
         let [a, b, c] = rays.sheared::<Fused>(simd, packet);
-        let weights = [(c, b), (a, c), (b, a)].map(|(p, q)| {
-            let minus = product(simd, p[1], q[0]);
-            let ends = |minus: S::Float| {
-                let ([p0, p1], [q0, q1]) = (p[0], q[1]);
-                [(p0, q0), (p0, q1), (p1, q0), (p1, q1)].map(|(p, q)| simd.mul_sub(p, q, minus))
-            };
-            [lowest(simd, ends(minus[1])), highest(simd, ends(minus[0]))]
-        });
+        let weights = each(
+            [(c, b), (a, c), (b, a)],
+            #[inline(always)]
+            |(p, q)| {
+                let minus = product(simd, p[1], q[0]);
+                let ends = inlined(
+                    #[inline(always)]
+                    |minus: S::Float| {
+                        let ([p0, p1], [q0, q1]) = (p[0], q[1]);
+                        each(
+                            [(p0, q0), (p0, q1), (p1, q0), (p1, q1)],
+                            #[inline(always)]
+                            |(p, q)| simd.mul_sub(p, q, minus),
+                        )
+                    },
+                );
+                [lowest(simd, ends(minus[1])), highest(simd, ends(minus[0]))]
+            },
+        );
         possible_sides(simd, weights, culling)
     }
 
@@ -87,6 +99,9 @@ impl Test for Fast {
 /// Twice the signed areas opposite to each corner.
 #[inline(always)]
 fn weights<S: Width<W>, const W: usize>(simd: S, &[a, b, c]: &[[S::Float; 3]; 3]) -> [S::Float; 3] {
-    let edge = |p: [S::Float; 3], q: [S::Float; 3]| simd.mul_sub(p[0], q[1], simd.mul(p[1], q[0]));
+    let edge = inlined(
+        #[inline(always)]
+        |p: [S::Float; 3], q: [S::Float; 3]| simd.mul_sub(p[0], q[1], simd.mul(p[1], q[0])),
+    );
     [edge(c, b), edge(a, c), edge(b, a)]
 }

@@ -6,6 +6,7 @@
 //! rejected here for the intervals that hold all rays is rejected for each of the rays, without any slack.
 
 use crate::filter::Culling;
+use crate::inlined::{each, inlined};
 use crate::layout::class::Axes;
 use crate::layout::columns::Columns;
 use crate::layout::packet::Packet;
@@ -31,14 +32,24 @@ impl<S: Width<W>, const W: usize> ShearBounds<S, W> {
     where
         S: Width<R>,
     {
-        let enclose = |lanes: <S as Width<R>>::Float| {
-            let ends = [
-                <S as Width<R>>::least(simd, lanes),
-                <S as Width<R>>::greatest(simd, lanes),
-            ];
-            ends.map(|end| <S as Width<W>>::splat(simd, end))
-        };
-        let org = |axis: usize| enclose(<S as Width<R>>::load(simd, &columns.org[axis]));
+        let enclose = inlined(
+            #[inline(always)]
+            |lanes: <S as Width<R>>::Float| {
+                let ends = [
+                    <S as Width<R>>::least(simd, lanes),
+                    <S as Width<R>>::greatest(simd, lanes),
+                ];
+                each(
+                    ends,
+                    #[inline(always)]
+                    |end| <S as Width<W>>::splat(simd, end),
+                )
+            },
+        );
+        let org = inlined(
+            #[inline(always)]
+            |axis: usize| enclose(<S as Width<R>>::load(simd, &columns.org[axis])),
+        );
         let [kx, ky, kz] = rays.axes();
         let [x, y] = rays.slope();
         ShearBounds {
@@ -55,18 +66,21 @@ impl<S: Width<W>, const W: usize> ShearBounds<S, W> {
         simd: S,
         packet: &impl Packet<W>,
     ) -> [[Interval<S::Float>; 2]; 3] {
-        let bounds = |points: &[[f32; W]; 3]| {
-            let relative = |axis: usize| {
-                let point = simd.load(&points[self.axes[axis] % 3]);
-                let [lo, hi] = self.org[axis];
-                [simd.sub(point, hi), simd.sub(point, lo)]
-            };
-            let z = relative(2);
-            [
-                K::bounds(simd, relative(0), self.slope[0], z),
-                K::bounds(simd, relative(1), self.slope[1], z),
-            ]
-        };
+        let bounds = inlined(
+            #[inline(always)]
+            |points: &[[f32; W]; 3]| {
+                let relative = |axis: usize| {
+                    let point = simd.load(&points[self.axes[axis] % 3]);
+                    let [lo, hi] = self.org[axis];
+                    [simd.sub(point, hi), simd.sub(point, lo)]
+                };
+                let z = relative(2);
+                [
+                    K::bounds(simd, relative(0), self.slope[0], z),
+                    K::bounds(simd, relative(1), self.slope[1], z),
+                ]
+            },
+        );
         let first = packet.in_lanes(
             simd,
             #[inline(always)]
@@ -83,10 +97,13 @@ impl<S: Width<W>, const W: usize> ShearBounds<S, W> {
                 [y[1]; 3]
             },
         );
-        let corner = |corner: usize| {
-            let [x0, x1, y0] = first[corner];
-            [[x0, x1], [y0, second[corner][0]]]
-        };
+        let corner = inlined(
+            #[inline(always)]
+            |corner: usize| {
+                let [x0, x1, y0] = first[corner];
+                [[x0, x1], [y0, second[corner][0]]]
+            },
+        );
         [corner(0), corner(1), corner(2)]
     }
 }

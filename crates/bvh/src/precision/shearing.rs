@@ -1,5 +1,6 @@
 //! How corners are moved to the space in which a ray is the z axis.
 
+use crate::inlined::inlined;
 use crate::precision::interval::{Interval, highest, lowest, product};
 use crate::simd::Width;
 
@@ -72,14 +73,17 @@ impl Shearing for Fused {
         slope: Interval<S::Float>,
         z: Interval<S::Float>,
     ) -> Interval<S::Float> {
-        let ends = |x: S::Float| {
-            [
-                simd.mul_sub(slope[0], z[0], x),
-                simd.mul_sub(slope[0], z[1], x),
-                simd.mul_sub(slope[1], z[0], x),
-                simd.mul_sub(slope[1], z[1], x),
-            ]
-        };
+        let ends = inlined(
+            #[inline(always)]
+            |x: S::Float| {
+                [
+                    simd.mul_sub(slope[0], z[0], x),
+                    simd.mul_sub(slope[0], z[1], x),
+                    simd.mul_sub(slope[1], z[0], x),
+                    simd.mul_sub(slope[1], z[1], x),
+                ]
+            },
+        );
         [lowest(simd, ends(x[1])), highest(simd, ends(x[0]))]
     }
 }

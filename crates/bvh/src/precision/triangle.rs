@@ -3,6 +3,7 @@
 //! A test is written once and serves both arrangements: one ray against the triangles of a packet,
 //! a triangle a lane, and a packet of rays against one triangle, a ray a lane.
 
+use crate::inlined::{each, inlined};
 use crate::layout::class::{Axes, axes};
 use crate::layout::columns::Columns;
 use crate::layout::packet::Packet;
@@ -37,7 +38,13 @@ impl<S: Width<W>, const W: usize, T: Packet<W>> Triangles<S, W> for &T {
         self.in_lanes(
             simd,
             #[inline(always)]
-            |points| rays.sheared::<K>(simd, |axis| simd.load(&points[axis % 3])),
+            |points| {
+                rays.sheared::<K>(
+                    simd,
+                    #[inline(always)]
+                    |axis| simd.load(&points[axis % 3]),
+                )
+            },
         )
     }
 }
@@ -63,11 +70,16 @@ impl<S: Width<W>, const W: usize, const P: usize, T: Packet<P>> Triangles<S, W>
 
     #[inline(always)]
     fn sheared<K: Shearing>(&self, simd: S, rays: &Shear<'_, S, W>) -> [[S::Float; 3]; 3] {
-        let corner = |corner: usize| {
-            rays.sheared::<K>(simd, |axis| {
-                simd.splat(self.packet.coordinate(self.lane, corner, axis))
-            })
-        };
+        let corner = inlined(
+            #[inline(always)]
+            |corner: usize| {
+                rays.sheared::<K>(
+                    simd,
+                    #[inline(always)]
+                    |axis| simd.splat(self.packet.coordinate(self.lane, corner, axis)),
+                )
+            },
+        );
         [corner(0), corner(1), corner(2)]
     }
 }
@@ -164,7 +176,11 @@ impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
         axes: Axes,
     ) -> Self {
         let [kx, ky, kz] = axes;
-        let dir = axes.map(|axis| simd.load(&columns.dir[axis]));
+        let dir = each(
+            axes,
+            #[inline(always)]
+            |axis| simd.load(&columns.dir[axis]),
+        );
         Shear {
             axes,
             org: [
@@ -205,7 +221,10 @@ impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
         simd: S,
         point: impl Fn(usize) -> S::Float,
     ) -> [S::Float; 3] {
-        let relative = |axis: usize| simd.sub(point(self.axes[axis]), self.org[axis]);
+        let relative = inlined(
+            #[inline(always)]
+            |axis: usize| simd.sub(point(self.axes[axis]), self.org[axis]),
+        );
         let [x, y, z] = [relative(0), relative(1), relative(2)];
         [
             K::sheared(simd, x, self.slope[0], z),

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use crate::bounds::Bounds;
 use crate::filter::Culling;
+use crate::inlined::{each, inlined};
 use crate::layout::packet::Packet;
 use crate::precision::ending::Ending;
 use crate::precision::interval::product;
@@ -48,7 +49,11 @@ impl Test for Watertight {
         culling: Culling,
     ) -> u32 {
         let corners = triangles.sheared::<Rounded>(simd, rays);
-        let weights = products(simd, &corners).map(|(p, q)| simd.sub(p, q));
+        let weights = each(
+            products(simd, &corners),
+            #[inline(always)]
+            |(p, q)| simd.sub(p, q),
+        );
         sides(simd, weights, culling).lanes & triangles.used(simd)
     }
 
@@ -61,10 +66,14 @@ impl Test for Watertight {
         culling: Culling,
     ) -> u32 {
         let [a, b, c] = rays.sheared::<Rounded>(simd, packet);
-        let weights = [(c, b), (a, c), (b, a)].map(|(p, q)| {
-            let (plus, minus) = (product(simd, p[0], q[1]), product(simd, p[1], q[0]));
-            [simd.sub(plus[0], minus[1]), simd.sub(plus[1], minus[0])]
-        });
+        let weights = each(
+            [(c, b), (a, c), (b, a)],
+            #[inline(always)]
+            |(p, q)| {
+                let (plus, minus) = (product(simd, p[0], q[1]), product(simd, p[1], q[0]));
+                [simd.sub(plus[0], minus[1]), simd.sub(plus[1], minus[0])]
+            },
+        );
         possible_sides(simd, weights, culling)
     }
 
@@ -80,7 +89,11 @@ impl Test for Watertight {
     ) -> Option<LaneHits<S, W>> {
         let corners @ [a, b, c] = triangles.sheared::<Rounded>(simd, rays);
         let edges = products(simd, &corners);
-        let [w, u, v] = edges.map(|(p, q)| simd.sub(p, q));
+        let [w, u, v] = each(
+            edges,
+            #[inline(always)]
+            |(p, q)| simd.sub(p, q),
+        );
         let mut inside = sides(simd, [w, u, v], culling).among(triangles.used(simd));
         if E::EARLY && inside.lanes == 0 {
             return None;
@@ -91,7 +104,11 @@ impl Test for Watertight {
         // Not NaN.
         inside.lanes &= simd.bits(simd.le(determinant, determinant));
         let inv = simd.div(simd.splat(1.0), determinant);
-        let [w, u, v] = [w, u, v].map(|weight| simd.mul(weight, inv));
+        let [w, u, v] = each(
+            [w, u, v],
+            #[inline(always)]
+            |weight| simd.mul(weight, inv),
+        );
         let depth = simd.add(
             simd.add(simd.mul(w, a[2]), simd.mul(u, b[2])),
             simd.mul(v, c[2]),
@@ -104,7 +121,10 @@ impl Test for Watertight {
             v,
         };
 
-        let size = |(p, q): (S::Float, S::Float)| simd.add(simd.abs(p), simd.abs(q));
+        let size = inlined(
+            #[inline(always)]
+            |(p, q): (S::Float, S::Float)| simd.add(simd.abs(p), simd.abs(q)),
+        );
         let sizes = simd.add(simd.add(size(edges[0]), size(edges[1])), size(edges[2]));
         let well = simd.lt(
             simd.add(sizes, simd.splat(SMALLEST)),
@@ -127,8 +147,10 @@ fn products<S: Width<W>, const W: usize>(
     simd: S,
     &[a, b, c]: &[[S::Float; 3]; 3],
 ) -> [(S::Float, S::Float); 3] {
-    let products =
-        |p: [S::Float; 3], q: [S::Float; 3]| (simd.mul(p[0], q[1]), simd.mul(p[1], q[0]));
+    let products = inlined(
+        #[inline(always)]
+        |p: [S::Float; 3], q: [S::Float; 3]| (simd.mul(p[0], q[1]), simd.mul(p[1], q[0])),
+    );
     [products(c, b), products(a, c), products(b, a)]
 }
 

@@ -1,6 +1,7 @@
 //! The best hits so far of rays in lanes.
 
 use crate::filter::{Culling, HitFilter, improve};
+use crate::inlined::inlined;
 use crate::layout::columns::Columns;
 use crate::layout::triangle_packet::SINGLE_SIDED;
 use crate::precision::ending::Early;
@@ -112,9 +113,12 @@ impl<const R: usize> BestHits<R> {
         prim: u32,
         _: G,
     ) {
-        let replace = |column: &mut [f32; R], new: S::Float| {
-            simd.store(simd.select(lanes, new, simd.load(column)), column);
-        };
+        let replace = inlined(
+            #[inline(always)]
+            |column: &mut [f32; R], new: S::Float| {
+                simd.store(simd.select(lanes, new, simd.load(column)), column);
+            },
+        );
         replace(&mut self.prim, simd.splat(f32::from_bits(prim)));
         if G::ANY {
             replace(&mut self.t, simd.splat(-1.0));

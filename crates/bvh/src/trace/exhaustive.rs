@@ -89,7 +89,11 @@ impl<S, Pr: Precision, F: HitFilter, G: Goal> ExhaustiveKernel<'_, S, Pr, F, G> 
         columns.clip(members.len());
         let shear = Shear::<S, LANES>::of_rays(simd, &columns, rays, members, axes);
         for (sheared, vertex) in sheared.iter_mut().zip(table.vertices()) {
-            *sheared = shear.sheared::<Pr::Shearing>(simd, |axis| simd.splat(vertex[axis % 3]));
+            *sheared = shear.sheared::<Pr::Shearing>(
+                simd,
+                #[inline(always)]
+                |axis| simd.splat(vertex[axis % 3]),
+            );
         }
 
         // First the triangles that some ray may hit, without a branch that may be mispredicted.

@@ -78,9 +78,13 @@ where
         for run in runs(rays) {
             match run {
                 Run::Coherent(window) => {
-                    answers.together(window.clone(), |hits| {
-                        packets.neighbours::<R>(&rays[window], hits);
-                    });
+                    answers.together(
+                        window.clone(),
+                        #[inline(always)]
+                        |hits| {
+                            packets.neighbours::<R>(&rays[window], hits);
+                        },
+                    );
                 }
                 Run::Incoherent(run) if let Some(table) = &*table => {
                     let kernel = ExhaustiveKernel {

@@ -100,8 +100,10 @@ where
         let slab = Slab::<S, R>::of_rays(simd, &columns, class.octant);
         let shear = Shear::<S, R>::of_rays(simd, &columns, rays, members, class.axes);
 
-        let bounds = (self.is_moderate && columns.is_moderate(simd))
-            .then(|| ShearBounds::<S, P>::enclosing(simd, &columns, &shear));
+        let bounds = match self.is_moderate && columns.is_moderate(simd) {
+            true => Some(ShearBounds::<S, P>::enclosing(simd, &columns, &shear)),
+            false => None,
+        };
 
         let mut best = BestHits::new(&columns);
         let mut farthest = best.farthest(simd);
@@ -218,10 +220,12 @@ where
         let mut found = false;
         let first = leaf.first_packet();
         for packet in &self.bvh.packets()[first..first + leaf.packet_count()] {
-            let candidates = bounds.map_or(u32::MAX, |bounds| {
-                self.precision
-                    .candidates_of_rays(simd, bounds, packet, F::CULLING)
-            });
+            let candidates = match bounds {
+                None => u32::MAX,
+                Some(bounds) => self
+                    .precision
+                    .candidates_of_rays(simd, bounds, packet, F::CULLING),
+            };
             for lane in lanes(candidates & (u32::MAX >> (32 - P))) {
                 let prim = packet.prim_ids()[lane % P];
                 if prim == u32::MAX {

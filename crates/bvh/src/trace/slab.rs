@@ -15,6 +15,7 @@
 //! The same test serves one ray against the `N` boxes of a node, `N` rays against one box, and the
 //! envelope of a packet of rays against `N` boxes.
 
+use crate::inlined::{each, inlined};
 use crate::layout::boxes::Boxes;
 use crate::layout::class::Octant;
 use crate::layout::columns::Columns;
@@ -50,11 +51,14 @@ impl Constants {
         let far_scale = simd.mul(far_inv, simd.splat(1.0 + STRETCH));
         let near_shift = shift(simd, simd.load(&near_org), near_scale, -REACH);
         let far_shift = shift(simd, simd.load(&far_org), far_scale, REACH);
-        let array = |lanes: S::Float| {
-            let mut array = [0.0; 4];
-            simd.store(lanes, &mut array);
-            array
-        };
+        let array = inlined(
+            #[inline(always)]
+            |lanes: S::Float| {
+                let mut array = [0.0; 4];
+                simd.store(lanes, &mut array);
+                array
+            },
+        );
         Constants {
             near_scale: array(near_scale),
             near_shift: array(near_shift),
@@ -96,12 +100,20 @@ fn inverse_of_rays<S: Width<R>, const R: usize>(
     rays: &Columns<R>,
     octant: Octant,
 ) -> [S::Float; 3] {
-    let size = [0, 1, 2].map(|axis| simd.abs(simd.load(&rays.dir[axis])));
+    let size = each(
+        [0, 1, 2],
+        #[inline(always)]
+        |axis| simd.abs(simd.load(&rays.dir[axis])),
+    );
     let longest = simd.max_number(simd.max_number(size[0], size[1]), size[2]);
-    [0, 1, 2].map(|axis| {
-        let sign = simd.splat(if octant[axis] { -1.0 } else { 1.0 });
-        inverse(simd, sign, size[axis], longest)
-    })
+    each(
+        [0, 1, 2],
+        #[inline(always)]
+        |axis: usize| {
+            let sign = simd.splat(if octant[axis] { -1.0 } else { 1.0 });
+            inverse(simd, sign, size[axis], longest)
+        },
+    )
 }
 
 /// One ray prepared for slab tests, as it is kept in memory.
@@ -165,13 +177,29 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
     /// A ray a lane, all of one octant, and valid.
     #[inline(always)]
     pub(crate) fn of_rays(simd: S, rays: &Columns<N>, octant: Octant) -> Slab<S, N> {
-        let axes = [0, 1, 2];
+        let axes = [0, 1, 2_usize];
         let inv = inverse_of_rays(simd, rays, octant);
-        let scale = |by: f32| axes.map(|axis| simd.mul(inv[axis], simd.splat(by)));
+        let scale = inlined(
+            #[inline(always)]
+            |by: f32| {
+                each(
+                    axes,
+                    #[inline(always)]
+                    |axis| simd.mul(inv[axis], simd.splat(by)),
+                )
+            },
+        );
         let (near_scale, far_scale) = (scale(1.0 - STRETCH), scale(1.0 + STRETCH));
-        let shift = |scale: [S::Float; 3], reach: f32| {
-            axes.map(|axis| shift(simd, simd.load(&rays.org[axis]), scale[axis], reach))
-        };
+        let shift = inlined(
+            #[inline(always)]
+            |scale: [S::Float; 3], reach: f32| {
+                each(
+                    axes,
+                    #[inline(always)]
+                    |axis| shift(simd, simd.load(&rays.org[axis]), scale[axis], reach),
+                )
+            },
+        );
         Slab {
             near_scale,
             near_shift: shift(near_scale, -REACH),
@@ -208,7 +236,11 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
                 (hi_org, lo_org, lo_inv, hi_inv)
             };
         }
-        let [near_inv, far_inv] = [near_inv, far_inv].map(|inv| <S as Width<4>>::load(simd, &inv));
+        let [near_inv, far_inv] = each(
+            [near_inv, far_inv],
+            #[inline(always)]
+            |inv| <S as Width<4>>::load(simd, &inv),
+        );
         let constants = Constants::new(simd, near_org, near_inv, far_org, far_inv);
         let tmin = <S as Width<R>>::load(simd, &rays.tmin);
         let tmin = <S as Width<R>>::least(simd, tmin);
@@ -217,7 +249,10 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
 
     #[inline(always)]
     fn splat(simd: S, constants: &Constants, near_row: [u8; 3], tmin: f32) -> Slab<S, N> {
-        let splat = |x: [f32; 4]| [simd.splat(x[0]), simd.splat(x[1]), simd.splat(x[2])];
+        let splat = inlined(
+            #[inline(always)]
+            |x: [f32; 4]| [simd.splat(x[0]), simd.splat(x[1]), simd.splat(x[2])],
+        );
         Slab {
             near_scale: splat(constants.near_scale),
             near_shift: splat(constants.near_shift),
@@ -237,14 +272,20 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
         plane: impl Fn(usize, usize) -> S::Float,
         tmax: S::Float,
     ) -> (u32, S::Float) {
-        let near = |axis: usize| {
-            let plane = plane(axis, usize::from(self.near_row[axis]));
-            simd.mul_add(plane, self.near_scale[axis], self.near_shift[axis])
-        };
-        let far = |axis: usize| {
-            let plane = plane(axis, usize::from(self.near_row[axis] ^ 1));
-            simd.mul_add(plane, self.far_scale[axis], self.far_shift[axis])
-        };
+        let near = inlined(
+            #[inline(always)]
+            |axis: usize| {
+                let plane = plane(axis, usize::from(self.near_row[axis]));
+                simd.mul_add(plane, self.near_scale[axis], self.near_shift[axis])
+            },
+        );
+        let far = inlined(
+            #[inline(always)]
+            |axis: usize| {
+                let plane = plane(axis, usize::from(self.near_row[axis] ^ 1));
+                simd.mul_add(plane, self.far_scale[axis], self.far_shift[axis])
+            },
+        );
         let entry = simd.max_number(near(0), self.tmin);
         let entry = simd.max_number(near(2), simd.max_number(near(1), entry));
         let exit = simd.min_number(far(0), tmax);
@@ -260,10 +301,13 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
         node: &impl Boxes<N>,
         tmax: f32,
     ) -> (u32, S::Float) {
-        let plane = |axis: usize, row: usize| {
-            // SAFETY: near rows are of their axis, and so are they with the low bit flipped.
-            unsafe { node.plane(simd, axis, row) }
-        };
+        let plane = inlined(
+            #[inline(always)]
+            |axis: usize, row: usize| {
+                // SAFETY: near rows are of their axis, and so are they with the low bit flipped.
+                unsafe { node.plane(simd, axis, row) }
+            },
+        );
         let (touched, entry) = self.touched(simd, plane, simd.splat(tmax));
         (touched & node.used(), entry)
     }
@@ -277,7 +321,10 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
         slot: usize,
         tmax: &[f32; N],
     ) -> u32 {
-        let plane = |axis: usize, row: usize| simd.splat(node.plane_of(slot, axis, row));
+        let plane = inlined(
+            #[inline(always)]
+            |axis: usize, row: usize| simd.splat(node.plane_of(slot, axis, row)),
+        );
         self.touched(simd, plane, simd.load(tmax)).0
     }
 }
