@@ -94,8 +94,8 @@ impl<const R: usize> Columns<R> {
             |size: S::Float| simd.bits(simd.le(size, largest)),
         );
         let mut valid = simd.bits(simd.le(load(&self.tmin), load(&self.tmax)));
-        for axis in 0..3 {
-            valid &= finite(size[axis]) & finite(simd.abs(load(&self.org[axis])));
+        for (&size, org) in size.iter().zip(&self.org) {
+            valid &= finite(size) & finite(simd.abs(load(org)));
         }
         let longest = simd.max_number(simd.max_number(size[0], size[1]), size[2]);
         valid &= simd.bits(simd.le(simd.splat(f32::MIN_POSITIVE), longest));
