@@ -114,8 +114,9 @@ fn bodies_absorb_by_their_thickness() {
         let expected = TEA
             .color
             .map(|c| f64::from(c).powf(f64::from(thickness) / 0.5));
-        let seen = rendered(&scene, 1);
-        assert_near(&format!("thickness {thickness}"), seen, expected, 1e-5);
+        // What is noisy is roulette alone.
+        let seen = rendered(&scene, 1024);
+        assert_near(&format!("thickness {thickness}"), seen, expected, 2e-3);
     }
 }
 
