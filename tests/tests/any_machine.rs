@@ -12,7 +12,7 @@ use object::{Object as _, ObjectSymbol as _};
 
 /// `cargo test --release --test any_machine -- --ignored`
 #[test]
-#[ignore = "compiles ray queries for all instruction sets, a minute of two cores"]
+#[ignore = "compiles ray queries for all instruction sets, two minutes of two cores"]
 fn every_operation_on_lanes_is_inlined() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let folder = root.join("target").join("any-machine");
