@@ -42,6 +42,8 @@ pub struct Look {
     pub samples: u32,
     /// Most vertices of a path.
     pub max_depth: u32,
+    /// First vertex at which roulette may end a path.
+    pub roulette_from: u32,
     /// Seed.
     pub seed: u32,
     /// Threads.
@@ -61,6 +63,7 @@ impl Look {
             size,
             samples,
             max_depth: 8,
+            roulette_from: RenderOptions::default().roulette_from,
             seed: 0,
             threads: 2,
             reach: f32::MAX,
@@ -139,6 +142,7 @@ impl<'a> Prepared<'a> {
             size: look.size,
             samples: Some(look.samples),
             max_depth: look.max_depth,
+            roulette_from: look.roulette_from,
             seed: look.seed,
             reach: look.reach,
             sampling: look.sampling,

@@ -5,19 +5,17 @@
 #![cfg(all(target_os = "linux", target_arch = "x86_64"))]
 
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 
 use object::{Object as _, ObjectSymbol as _};
+use residual_driver::cargo;
+use residual_driver::workspace::target_directory;
 
 /// `cargo test --release --test any_machine -- --ignored`
 #[test]
 #[ignore = "compiles ray queries for all instruction sets, two minutes of two cores"]
 fn every_operation_on_lanes_is_inlined() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let folder = root.join("target").join("any-machine");
-    let status = Command::new(env!("CARGO"))
-        .current_dir(root)
+    let folder = target_directory().join("any-machine");
+    let status = cargo::command()
         .env("RUSTFLAGS", "-C target-cpu=x86-64")
         .args(["build", "--release", "--package", "residual-bvh"])
         .args(["--example", "trace", "--target-dir"])

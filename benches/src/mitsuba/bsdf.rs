@@ -2,7 +2,7 @@
 
 use residual_render::bsdf::AnyInterface;
 use residual_render::program::{
-    BsdfNode, ColorNode, FresnelNode, Program, RoughnessNode, ScalarNode, SourceNode,
+    BsdfNode, ColorNode, FresnelNode, ImageNode, Program, RoughnessNode, ScalarNode, SourceNode,
 };
 use residual_render::texture::Input;
 
@@ -57,13 +57,9 @@ impl Inputs<'_> {
         let input = &self.0.inputs[index];
         match &input.source {
             SourceNode::Color(ColorNode::Const(value)) => Ok(Element::color(name, *value)),
-            SourceNode::Color(ColorNode::Image(image)) => textures.color(name, [1.0; 3], image),
-            SourceNode::Color(ColorNode::Product(factor, image)) => match (&**factor, &**image) {
-                (ColorNode::Const(factor), ColorNode::Image(image)) => {
-                    textures.color(name, *factor, image)
-                }
-                _ => Err(format!("vertex colours or more for {:?}", input.name)),
-            },
+            SourceNode::Color(node) if let Some((factor, image)) = factor_and_image(node) => {
+                textures.color(name, factor, image)
+            }
             _ => Err(format!("vertex colours or more for {:?}", input.name)),
         }
     }
@@ -178,6 +174,17 @@ impl Inputs<'_> {
             BsdfNode::Phong { .. } => Err("a Phong lobe".to_owned()),
             BsdfNode::Mix { .. } | BsdfNode::Sum { .. } => Err("a mix of lobes".to_owned()),
         }
+    }
+}
+
+fn factor_and_image(node: &ColorNode) -> Option<([f32; 3], &ImageNode)> {
+    match node {
+        ColorNode::Image(image) => Some(([1.0; 3], image)),
+        ColorNode::Product(factor, image) => match (&**factor, &**image) {
+            (ColorNode::Const(factor), ColorNode::Image(image)) => Some((*factor, image)),
+            _ => None,
+        },
+        _ => None,
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! What is let through counts as a vertex of the path there, but not here.
 
-use residual_render::program::{AlphaTestNode, ScalarNode};
+use residual_render::program::{AlphaTestNode, ImageNode, ScalarNode};
 
 use super::textures::Textures;
 use super::xml::Element;
@@ -36,7 +36,7 @@ pub(super) fn masked(
     }
 }
 
-fn factor_and_image(alpha: &ScalarNode) -> Option<(f32, &residual_render::program::ImageNode)> {
+fn factor_and_image(alpha: &ScalarNode) -> Option<(f32, &ImageNode)> {
     match alpha {
         ScalarNode::Image(image) => Some((1.0, image)),
         ScalarNode::Product(factor, image) => match (&**factor, &**image) {

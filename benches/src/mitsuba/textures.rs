@@ -61,9 +61,9 @@ impl<'a> Textures<'a> {
         image: &ImageNode,
     ) -> Result<Element, String> {
         let texels = in_coordinates_of_image(image, AnyFilter::Nearest);
-        let size @ [columns, rows] = self.size(image);
+        let size = self.size(image);
         let raster = Raster::of_colors(size, |x, y| {
-            let surface = self.at([center(x, columns), center(y, rows)]);
+            let surface = self.at_pixel([x, y], size);
             let color = texels.color(self.d, &surface).to_array();
             [0, 1, 2].map(|k| factor[k] * color[k])
         });
@@ -81,9 +81,9 @@ impl<'a> Textures<'a> {
         image: &ImageNode,
     ) -> Result<Element, String> {
         let texels = in_coordinates_of_image(image, AnyFilter::Nearest);
-        let size @ [columns, rows] = self.size(image);
+        let size = self.size(image);
         let raster = Raster::of_numbers(size, |x, y| {
-            let surface = self.at([center(x, columns), center(y, rows)]);
+            let surface = self.at_pixel([x, y], size);
             factor * texels.scalar(self.d, &surface)
         });
         self.bitmap(name, raster, image, image.filter)
@@ -107,9 +107,9 @@ impl<'a> Textures<'a> {
             AnyFilter::Nearest => 1,
             AnyFilter::Bilinear | AnyFilter::Trilinear => PARTS,
         };
-        let size @ [columns, rows] = self.size(image).map(|texels| parts * texels);
+        let size = self.size(image).map(|texels| parts * texels);
         let raster = Raster::of_numbers(size, |x, y| {
-            let surface = self.at([center(x, columns), center(y, rows)]);
+            let surface = self.at_pixel([x, y], size);
             let is_there = cutoff <= factor * filtered.scalar(self.d, &surface);
             f32::from(u8::from(is_there))
         });
@@ -121,8 +121,9 @@ impl<'a> Textures<'a> {
         (self.d, self.surface)
     }
 
-    /// The point with these coordinates.
-    fn at(&self, uv: [f32; 2]) -> Surface<Scalar<'a>> {
+    /// The point whose coordinates are the middle of a pixel of an image of that size.
+    fn at_pixel(&self, pixel: [u32; 2], size: [u32; 2]) -> Surface<Scalar<'a>> {
+        let uv = [0, 1].map(|axis| ((f64::from(pixel[axis]) + 0.5) / f64::from(size[axis])) as f32);
         Surface {
             uv: [uv; 2],
             ..self.surface
@@ -180,9 +181,4 @@ fn in_coordinates_of_image(image: &ImageNode, filter: AnyFilter) -> ImageNode {
         filter,
         ..*image
     }
-}
-
-/// The coordinate of a column's or row's middle.
-fn center(index: u32, count: u32) -> f32 {
-    ((f64::from(index) + 0.5) / f64::from(count)) as f32
 }

@@ -23,6 +23,7 @@ const LOOK: Look = Look {
     size: [48; 2],
     samples: 32,
     max_depth: 8,
+    roulette_from: 2,
     seed: 0,
     threads: 2,
     reach: f32::MAX,

@@ -9,6 +9,7 @@
 
 use crate::bounds::Bounds;
 use crate::filter::Culling;
+use crate::inlined::each;
 use crate::layout::packet::Packet;
 use crate::precision::ending::Ending;
 use crate::precision::expansion::{self, Pair};
@@ -133,23 +134,31 @@ fn candidates<S: Width<W>, const W: usize>(
     let sheared = triangles.sheared::<Rounded>(simd, rays);
     // Where nothing is used; what overflows is infinite.
     let is_number = simd.bits(simd.le(sheared[0][2], sheared[0][2]));
-    let corners = sheared.map(|[x, y, z]| {
-        let (across, along) = (simd.add(simd.abs(x), simd.abs(y)), simd.abs(z));
-        let g = simd.add(across, simd.mul(along, simd.splat(4.0 * U)));
-        let t = simd.add(simd.add(across, along), least);
-        (x, y, g, t)
-    });
+    let corners = each(
+        sheared,
+        #[inline(always)]
+        |[x, y, z]| {
+            let (across, along) = (simd.add(simd.abs(x), simd.abs(y)), simd.abs(z));
+            let g = simd.add(across, simd.mul(along, simd.splat(4.0 * U)));
+            let t = simd.add(simd.add(across, along), least);
+            (x, y, g, t)
+        },
+    );
     let [a, b, c] = corners;
     // Whether each is certainly positive, and certainly negative, as bits.
-    let sides = [(c, b), (a, c), (b, a)].map(|(p, q)| {
-        let edge = simd.sub(simd.mul(p.0, q.1), simd.mul(p.1, q.0));
-        let size = simd.add(simd.mul(p.2, q.3), simd.mul(p.3, q.2));
-        let error = simd.add(simd.mul(size, simd.splat(5.0 * U)), least);
-        (
-            simd.bits(simd.lt(error, edge)),
-            simd.bits(simd.lt(simd.add(edge, error), zero)),
-        )
-    });
+    let sides = each(
+        [(c, b), (a, c), (b, a)],
+        #[inline(always)]
+        |(p, q)| {
+            let edge = simd.sub(simd.mul(p.0, q.1), simd.mul(p.1, q.0));
+            let size = simd.add(simd.mul(p.2, q.3), simd.mul(p.3, q.2));
+            let error = simd.add(simd.mul(size, simd.splat(5.0 * U)), least);
+            (
+                simd.bits(simd.lt(error, edge)),
+                simd.bits(simd.lt(simd.add(edge, error), zero)),
+            )
+        },
+    );
     let [w, u, v] = sides;
     let (positive, negative) = (w.0 | u.0 | v.0, w.1 | u.1 | v.1);
     let outside = match culling {

@@ -69,11 +69,14 @@ impl<S: Width<W>, const W: usize> ShearBounds<S, W> {
         let bounds = inlined(
             #[inline(always)]
             |points: &[[f32; W]; 3]| {
-                let relative = |axis: usize| {
-                    let point = simd.load(&points[self.axes[axis] % 3]);
-                    let [lo, hi] = self.org[axis];
-                    [simd.sub(point, hi), simd.sub(point, lo)]
-                };
+                let relative = inlined(
+                    #[inline(always)]
+                    |axis: usize| {
+                        let point = simd.load(&points[self.axes[axis] % 3]);
+                        let [lo, hi] = self.org[axis];
+                        [simd.sub(point, hi), simd.sub(point, lo)]
+                    },
+                );
                 let z = relative(2);
                 [
                     K::bounds(simd, relative(0), self.slope[0], z),

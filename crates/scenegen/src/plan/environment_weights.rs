@@ -11,6 +11,8 @@ use crate::desc::{ImageDesc, Texels};
 pub(super) struct EnvironmentWeights {
     width: usize,
     weights: Vec<f64>,
+    /// Of all weights: images have millions.
+    sum: f64,
 }
 
 impl EnvironmentWeights {
@@ -37,32 +39,42 @@ impl EnvironmentWeights {
                 weights.push((row(rows[0]) + 6.0 * row(rows[1]) + row(rows[2])) / 8.0 * sin);
             }
         }
-        Self { width, weights }
+        let sum = weights.iter().sum();
+        Self {
+            width,
+            weights,
+            sum,
+        }
     }
 
     /// Their mean.
     pub(super) fn mean(&self) -> f64 {
-        self.weights.iter().sum::<f64>() / self.weights.len() as f64
+        self.sum / self.weights.len() as f64
     }
 
     /// The weights of samples that share their work with BSDF samples, which find the environment, too: of radiance what is above
     /// its mean over all directions, and 0 for the rest (Karlík, Šik, Vévoda, Skřivan and Křivánek 2019, "MIS Compensation: Optimizing Sampling
     /// Techniques in Multiple Importance Sampling"). An environment that is the same everywhere stays as it is.
-    pub(super) fn compensated(self) -> Self {
+    pub(super) fn compensated(mut self) -> Self {
         let width = self.width;
         let height = self.weights.len() / width;
-        let solid_angles = (0..height).map(|row| row_sine(row, height));
-        let radiance =
-            self.weights.iter().sum::<f64>() / (width as f64 * solid_angles.clone().sum::<f64>());
-        let rows = self.weights.chunks(width).zip(solid_angles);
-        let weights: Vec<f64> = rows
-            .flat_map(|(row, sine)| row.iter().map(move |w| (w - radiance * sine).max(0.0)))
-            .collect();
+        let sines: Vec<f64> = (0..height).map(|row| row_sine(row, height)).collect();
+        let radiance = self.sum / (width as f64 * sines.iter().sum::<f64>());
+        let excess = |weight: f64, sine: f64| (weight - radiance * sine).max(0.0);
+        let rows = self.weights.chunks(width).zip(&sines);
+        let sum: f64 = rows
+            .flat_map(|(row, &sine)| row.iter().map(move |&weight| excess(weight, sine)))
+            .sum();
         // What rounding leaves of an even environment says nothing.
-        match weights.iter().sum::<f64>() > 1e-6 * self.weights.iter().sum::<f64>() {
-            true => Self { width, weights },
-            false => self,
+        if sum <= 1e-6 * self.sum {
+            return self;
         }
+        for (row, &sine) in self.weights.chunks_mut(width).zip(&sines) {
+            for weight in row {
+                *weight = excess(*weight, sine);
+            }
+        }
+        Self { sum, ..self }
     }
 
     /// The table by which texels are picked. Densities are over the unit square of image coordinates.
