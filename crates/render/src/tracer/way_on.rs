@@ -10,6 +10,9 @@ use crate::sampler::Sampler;
 /// What a path is to be worth on its way, of the 1 that it begins with. Less takes time for what hardly shows; with more, paths end that
 /// light the darker parts of an image (measured from 1/4 to 1).
 const LEAST_WORTH: f64 = 1.0 / 3.0;
+/// From this vertex on, a path may also end that is worth all of that: between surfaces that lose nothing it would go on for ever.
+/// To end it sooner costs more noise than it saves time (measured with 4, 6, 8 and 16).
+const ALWAYS_MORTAL_FROM: u32 = 8;
 
 /// A sampled direction, and the number that roulette is played with.
 pub(super) struct WayOn<D: Domain> {
@@ -62,14 +65,15 @@ impl<D: Domain> WayOn<D> {
     ) -> (D::M, D::F) {
         let early = d.lt_u(path.state.depth(d), settings.roulette_from);
         let one = d.lit(1.0);
-        // Between surfaces that lose nothing a path may go on for ever. Through a medium it gets out, though after many vertices,
-        // each of which would make it more worth and less likely.
-        let most = if vertex.is_in_medium { 1.0 } else { 0.95 };
-        let survival = d.select(
-            early,
-            one,
-            d.min(worth * d.lit(1.0 / LEAST_WORTH), d.lit(most)),
-        );
+        // Through a medium a path gets out, though after many vertices, each of which would make it more worth and less likely.
+        let most = match vertex.is_in_medium {
+            true => one,
+            false => {
+                let is_young = d.lt_u(path.state.depth(d), d.uint(ALWAYS_MORTAL_FROM));
+                d.select(is_young, one, d.lit(0.95))
+            }
+        };
+        let survival = d.select(early, one, d.min(worth * d.lit(1.0 / LEAST_WORTH), most));
         let alive = d.lt(d.lit(0.0), worth) & (early | d.lt(self.roulette, survival));
         (alive, one / d.select(alive, survival, one))
     }
