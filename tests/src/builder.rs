@@ -23,6 +23,11 @@ impl Builder {
         }
     }
 
+    /// A scene that there is, to be added to.
+    pub fn of(scene: SceneDesc) -> Self {
+        Self { scene }
+    }
+
     /// Adds meshes of one material.
     pub fn add(&mut self, material: MaterialDesc, meshes: impl IntoIterator<Item = MeshDesc>) {
         for mesh in meshes {

@@ -1,4 +1,4 @@
-//! Shadows of lights with a size, as a whole render shows them.
+//! Lights with a size, as a whole render shows them: their shadows, and what arrives below area lights.
 
 use glam::Vec3;
 use residual_device_cpu::LaneCount;
@@ -6,7 +6,8 @@ use residual_render::program::LightNode;
 use residual_scenegen::desc::{Projection, PunctualKind, SceneDesc};
 use residual_scenegen::plan::{PlanOptions, plan};
 use residual_tests::fixtures::{Builder, material, matte, sheet};
-use residual_tests::{Look, Prepared};
+use residual_tests::{Look, Prepared, read_scene};
+use serde_json::{Value, json};
 
 const SIZE: [u32; 2] = [64, 8];
 /// Half the width of what the camera sees.
@@ -145,4 +146,71 @@ fn a_light_without_a_size_is_a_point() {
     assert_eq!(scene.lights[0].size, 0.0);
     scene.set_light_radius(0.1);
     assert_eq!(scene.lights[0].size, 0.1);
+}
+
+/// The light of a file, 1 above a floor that reflects all, on which the camera looks down from above the light.
+fn below(light: &Value) -> SceneDesc {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("light.gltf");
+    let gltf = json!({
+        "asset": { "version": "2.0" },
+        "extensionsUsed": ["EXT_lights_area"],
+        "extensions": { "EXT_lights_area": { "lights": [light] } },
+        "nodes": [{ "translation": [0, 0, 1], "extensions": { "EXT_lights_area": { "light": 0 } } }],
+    });
+    std::fs::write(&file, gltf.to_string()).unwrap();
+    let mut b = Builder::of(read_scene(&file, None).unwrap());
+    let floor = sheet([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
+    b.add(material("floor", matte([1.0; 3])), [floor]);
+    let ymag = (HALF_WIDTH * f64::from(SIZE[1]) / f64::from(SIZE[0])) as f32;
+    let lens = Projection::Orthographic { ymag };
+    b.camera("camera", [0.0, 0.0, 3.0], [0.0, 0.0, 0.0], lens);
+    b.finish()
+}
+
+/// Irradiance over π below a disc of radiance 1, at this distance from its axis (Naraghi and Chung 1982, "Radiation
+/// configuration factors between disks and a class of axisymmetric bodies").
+fn below_disc(radius: f64, x: f64) -> f64 {
+    let [r2, x2] = [radius * radius, x * x];
+    0.5 * (1.0 - (1.0 + x2 - r2) / ((1.0 + x2 + r2).powi(2) - 4.0 * r2 * x2).sqrt())
+}
+
+/// The same below a rectangle, as far from its middle along its width: four corners' worth (Howell, "A Catalog of Radiation
+/// Configuration Factors", B-4).
+fn below_rectangle(half: [f64; 2], x: f64) -> f64 {
+    let corner = |a: f64, b: f64| {
+        let side = |a: f64, b: f64| a / (1.0 + a * a).sqrt() * (b / (1.0 + a * a).sqrt()).atan();
+        (side(a, b) + side(b, a)) / (2.0 * std::f64::consts::PI)
+    };
+    2.0 * (corner(half[0] - x, half[1]) + corner(half[0] + x, half[1]))
+}
+
+/// From above, where the camera is, nothing is there of a light that shines down.
+#[test]
+fn the_floor_below_area_lights_is_as_bright_as_closed_forms_say() {
+    let disc = json!({ "type": "disk", "size": 1.2, "intensity": 1 });
+    let rectangle = json!({ "type": "rect", "size": 0.6, "rect": { "aspect": 2 }, "intensity": 1 });
+    for (light, expected) in [
+        (disc, &(|x| below_disc(0.6, x)) as &dyn Fn(f64) -> f64),
+        (rectangle, &|x| below_rectangle([0.6, 0.3], x)),
+    ] {
+        let width = 2.0 * HALF_WIDTH / f64::from(SIZE[0]);
+        for (k, found) in columns(&below(&light), 256).into_iter().enumerate() {
+            let expected = expected((k as f64 + 0.5) * width - HALF_WIDTH);
+            assert!(
+                (found / expected - 1.0).abs() < 0.01,
+                "{k}: {found} {expected}"
+            );
+        }
+    }
+}
+
+/// Cameras see the front of area lights.
+#[test]
+fn area_lights_are_as_bright_as_they_say() {
+    let light = json!({ "type": "rect", "size": 9, "intensity": 0.75 });
+    let mut scene = below(&light);
+    scene.cameras[0].rotation = glam::Quat::from_rotation_x(std::f32::consts::PI);
+    scene.cameras[0].position = Vec3::new(0.0, 0.0, 0.5);
+    assert!(columns(&scene, 4).into_iter().all(|found| found == 0.75));
 }

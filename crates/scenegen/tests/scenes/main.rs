@@ -2,6 +2,7 @@
 
 mod common;
 
+mod area_lights;
 mod compressed;
 mod environment;
 mod geometry;

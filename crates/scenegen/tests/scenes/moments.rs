@@ -15,7 +15,7 @@ fn open(gltf: &Gltf, moments: &[f64]) -> Result<SceneDesc, ImportError> {
 }
 
 /// Animates a property of a node, with a key at each second.
-fn animate(gltf: &mut Gltf, node: usize, path: &str, how: &str, keys: &[[f32; 3]]) {
+pub(crate) fn animate(gltf: &mut Gltf, node: usize, path: &str, how: &str, keys: &[[f32; 3]]) {
     let times: Vec<f32> = (0..keys.len()).map(|k| k as f32).collect();
     let input = gltf.accessor("SCALAR", F32, &f32_bytes(&times), times.len());
     let output = gltf.accessor("VEC3", F32, &f32_bytes(keys.as_flattened()), keys.len());

@@ -24,7 +24,8 @@ enum Support {
 impl Support {
     fn of(extension: &str) -> Self {
         match extension {
-            "EXT_mesh_gpu_instancing"
+            "EXT_lights_area"
+            | "EXT_mesh_gpu_instancing"
             | "EXT_meshopt_compression"
             | "KHR_meshopt_compression"
             | "EXT_texture_webp"

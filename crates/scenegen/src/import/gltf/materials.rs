@@ -104,6 +104,13 @@ impl<'a> Materials<'a> {
         Ok((material, members.uv_sets))
     }
 
+    /// Takes one that is no material of the file, and has no textures; its index in the scene.
+    pub(super) fn add(&mut self, material: MaterialDesc) -> usize {
+        self.list.push(material);
+        self.uv_sets.push(UvSets::default());
+        self.list.len() - 1
+    }
+
     /// The materials, their textures, and the images decoded.
     pub(super) fn finish(
         self,

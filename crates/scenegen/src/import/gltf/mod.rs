@@ -5,11 +5,12 @@
 //!    (JSON, buffers; meshopt, draco)                             │   └─ skins
 //!                                                                ├─ materials ─ material ─ surface, layers ─▶ MaterialDesc
 //!                                                                │   └─ textures ─ images ─▶ TextureDesc, ImageRequest
-//!                                                                └─ lights, cameras, instancing
+//!                                                                └─ lights, area_lights, cameras, instancing
 //! ```
 
 mod accessors;
 mod animation;
+mod area_lights;
 mod cameras;
 mod deform;
 mod document;

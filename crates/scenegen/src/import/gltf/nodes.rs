@@ -124,7 +124,7 @@ pub(super) fn flatten<'a>(
         if is_first && let Some(used) = &node.extensions {
             extensions::warn_about_others(
                 &used.others,
-                &["EXT_mesh_gpu_instancing", VISIBILITY],
+                &["EXT_mesh_gpu_instancing", "EXT_lights_area", VISIBILITY],
                 &place,
                 warnings,
             );

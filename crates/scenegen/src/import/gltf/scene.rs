@@ -9,6 +9,7 @@ use gltf::json::{Index, Mesh, Node};
 
 use super::accessors::Accessors;
 use super::animation::Pose;
+use super::area_lights::{self, AreaLights};
 use super::deform::Deformation;
 use super::document::Document;
 use super::materials::Materials;
@@ -45,6 +46,7 @@ fn read(
         accessors: Accessors::new(document),
         materials: Materials::new(document),
         meshes: Meshes::new(document, variant),
+        area_lights: AreaLights::new(document),
         deformed: HashMap::new(),
     };
     let times: Vec<Option<f64>> = match options.moments.is_empty() {
@@ -85,7 +87,8 @@ fn read(
 /// Whether a node has a mesh or a light.
 fn shows_something(node: &Node) -> bool {
     let extensions = node.extensions.as_ref();
-    node.mesh.is_some() || extensions.is_some_and(|used| used.khr_lights_punctual.is_some())
+    let has_point = extensions.is_some_and(|used| used.khr_lights_punctual.is_some());
+    node.mesh.is_some() || has_point || area_lights::is_at(node)
 }
 
 /// What nodes with meshes fill.
@@ -94,12 +97,13 @@ struct Reader<'a> {
     accessors: Accessors<'a>,
     materials: Materials<'a>,
     meshes: Meshes<'a>,
+    area_lights: AreaLights<'a>,
     /// What nodes, by their place among those of the scene, showed of deformed meshes at the last moment, and how.
     deformed: HashMap<usize, (Deformation, Vec<usize>)>,
 }
 
 impl Reader<'_> {
-    /// Places the meshes of all nodes.
+    /// Places the meshes and area lights of all nodes.
     fn place_all(
         &mut self,
         nodes: &[PlacedNode<'_>],
@@ -112,12 +116,22 @@ impl Reader<'_> {
             if !placed.is_visible && shows_something(placed.node) {
                 warnings.dismiss(None, &*placed.place, "KHR_node_visibility hides it");
             }
-            if placed.is_visible
-                && let Some(mesh) = placed.node.mesh
-            {
+            if !placed.is_visible {
+                continue;
+            }
+            if let Some(mesh) = placed.node.mesh {
                 let deformation = self.deformation(mesh, placed, pose, &worlds, warnings)?;
                 self.place(mesh, index, placed, &deformation, &mut placements, warnings)?;
             }
+            let (meshes, materials) = (&mut self.meshes.list, &mut self.materials);
+            let light = self
+                .area_lights
+                .mesh_of(placed, meshes, materials, warnings);
+            placements.extend(light.map(|mesh| Placement {
+                mesh,
+                node: index,
+                world: area_lights::world(&placed.world),
+            }));
         }
         Ok(placements)
     }
