@@ -959,6 +959,29 @@ fn lights() -> Vec<Tiny> {
             }),
         ),
         Tiny::new(
+            "coated_emission",
+            &[
+                Effect::EmittingSurfaces,
+                Effect::CoatedEmission,
+                Effect::MetallicReflection,
+                Effect::ClearCoat,
+            ],
+            &point,
+            lit(|b| {
+                let coated = MetallicRoughness {
+                    clearcoat: scalar(0.8),
+                    clearcoat_roughness: scalar(0.1),
+                    ..metallic_roughness([0.7, 0.1, 0.1], 1.0, 0.5)
+                };
+                let lamp = MaterialDesc {
+                    emission: color([6.0, 5.0, 4.0]),
+                    ..material("lamp", SurfaceDesc::MetallicRoughness(coated))
+                };
+                let place = sheet([-0.4, 0.7, 0.9], [0.8, 0.0, 0.0], [0.0, 0.0, 0.6]);
+                b.add(lamp, [place]);
+            }),
+        ),
+        Tiny::new(
             "spot_light",
             &[Effect::SpotLights],
             &point,

@@ -64,6 +64,7 @@ const WORDS: &[(&str, &[Effect])] = &[
     ("AlphaMask {", &[Effect::AlphaMasks]),
     ("AlphaBlend {", &[Effect::AlphaBlending]),
     ("Coated {", COATS),
+    ("UnderCoat {", &[Effect::CoatedEmission]),
     ("Glossy {", FACETS),
     ("ThinFilm {", &[Effect::Iridescence]),
     ("Anisotropic {", &[Effect::Anisotropy]),
@@ -132,6 +133,7 @@ const SOURCES: &[(&str, &[Effect])] = &[
     ),
     ("render/src/bsdf/coated.rs", COATS),
     ("render/src/bsdf/glossy.rs", FACETS),
+    ("render/src/bsdf/fresnel.rs", FACETS),
     ("render/src/bsdf/phong.rs", &[Effect::PhongReflection]),
     ("render/src/bsdf/mirror.rs", &[Effect::MirrorReflection]),
     (
@@ -141,7 +143,7 @@ const SOURCES: &[(&str, &[Effect])] = &[
     ("render/src/bsdf/ggx.rs", FACETS),
     ("render/src/bsdf/directional_albedo.rs", FACETS),
     (
-        "render/src/bsdf/fresnel.rs",
+        "render/src/math/fresnel.rs",
         &[
             Effect::DielectricCoat,
             Effect::MetallicReflection,
@@ -156,6 +158,10 @@ const SOURCES: &[(&str, &[Effect])] = &[
         &[Effect::ScatteringMedia],
     ),
     ("render/src/tracer/dispersing.rs", &[Effect::Dispersion]),
+    (
+        "render/src/texture/under_coat.rs",
+        &[Effect::CoatedEmission],
+    ),
     ("render/src/light/area.rs", &[Effect::EmittingSurfaces]),
     (
         "render/src/light/area_by_solid_angle.rs",

@@ -8,11 +8,14 @@ use residual_render::passes::RenderOptions;
 use residual_render::program::LightNode;
 use residual_render::tracer::{AnyMis, TracerNode};
 use residual_scenegen::desc::{
-    AlphaMode, Filter, MaterialDesc, Projection, PunctualKind, ScalarInput, SceneDesc, Wrap,
+    AlphaMode, Filter, MaterialDesc, MetallicRoughness, Projection, PunctualKind, ScalarInput,
+    SceneDesc, SurfaceDesc, Wrap,
 };
 use residual_scenegen::plan::{LightPicks, LightPlaces, PlanOptions, plan};
 use residual_tests::Prepared;
-use residual_tests::fixtures::{self, Builder, color, material, matte, scalar, sheet};
+use residual_tests::fixtures::{
+    self, Builder, color, material, matte, metallic_roughness, scalar, sheet,
+};
 use std::ops::ControlFlow;
 
 const SIZE: [u32; 2] = [48, 36];
@@ -78,6 +81,7 @@ fn scenes() -> Vec<(&'static str, SceneDesc)> {
         ("room", fixtures::room()),
         ("lights", fixtures::lights()),
         ("lamps with alpha", lamps_with_alpha()),
+        ("coated lamp", coated_lamp()),
     ]
 }
 
@@ -132,6 +136,31 @@ fn lamps_with_alpha() -> SceneDesc {
             )],
         );
     }
+    let lens = Projection::Perspective { yfov: 0.9 };
+    b.camera("camera", [0.5, 2.5, 4.5], [0.0, 0.7, 0.0], lens);
+    b.finish()
+}
+
+/// A lamp whose coat lets through the less, the more it is seen from the side.
+fn coated_lamp() -> SceneDesc {
+    let mut b = Builder::new("coated lamp");
+    b.add(
+        material("floor", matte([0.8, 0.7, 0.6])),
+        [sheet([-2.0, 0.0, 2.0], [4.0, 0.0, 0.0], [0.0, 0.0, -4.0])],
+    );
+    let coated = MetallicRoughness {
+        clearcoat: scalar(0.9),
+        clearcoat_roughness: scalar(0.3),
+        ..metallic_roughness([0.5; 3], 0.0, 0.5)
+    };
+    let lamp = MaterialDesc {
+        emission: color([3.0, 2.0, 1.0]),
+        ..material("lamp", SurfaceDesc::MetallicRoughness(coated))
+    };
+    b.add(
+        lamp,
+        [sheet([-1.0, 0.1, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0])],
+    );
     let lens = Projection::Perspective { yfov: 0.9 };
     b.camera("camera", [0.5, 2.5, 4.5], [0.0, 0.7, 0.0], lens);
     b.finish()

@@ -222,7 +222,7 @@ fn dielectrics_conserve_energy_and_obey_snell() {
             d,
             view(cos, 0.3),
         );
-        let exact = residual_render::bsdf::fresnel(d, view(cos, 0.3).z, 1.5).0;
+        let exact = residual_render::math::fresnel::fresnel(d, view(cos, 0.3).z, 1.5).0;
         assert!((reflectance - f64::from(exact)).abs() < 1e-6, "{cos}");
     }
 }

@@ -1,9 +1,9 @@
 //! The `f32` domains give the same bits: every operation and elementary function.
 
 use fearless_simd::{Level, dispatch};
-use residual_render::bsdf::fresnel;
 use residual_render::domain::{Buffer, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, One, Scalar};
 use residual_render::math::elementary::{atan2, exp2, log2, pow, sincos_turns};
+use residual_render::math::fresnel::fresnel;
 use residual_render::math::vec3::vec3;
 use residual_render::math::{Frame, warp};
 use residual_render::scene_data::SceneData;

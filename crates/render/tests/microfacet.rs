@@ -1,9 +1,9 @@
 //! GGX and Fresnel formulas against `f64` and textbooks (hard cases M-01, M-06, M-08).
 
 use residual_render::bsdf::ggx::{Ggx, reflect};
-use residual_render::bsdf::{fresnel, schlick_weight};
 use residual_render::domain::{Buffers, Precise, Scalar};
 use residual_render::math::Vec3;
+use residual_render::math::fresnel::{fresnel, schlick_weight};
 use residual_render::math::vec3::vec3;
 
 use crate::support::random::Rng;

@@ -42,6 +42,7 @@ pub fn instead(effect: Effect) -> Option<&'static str> {
         Effect::BackFaceCulling => "seen from both sides",
         Effect::EmittingSurfaces => "dark",
         Effect::TexturedEmission => "its mean",
+        Effect::CoatedEmission => "without the coat over it",
         Effect::PointLights | Effect::SpotLights | Effect::DirectionalLights => "off",
         Effect::SphericalPointLights | Effect::SphericalSpotLights => "without a radius",
         Effect::Suns => "without an angle",
@@ -130,6 +131,9 @@ fn change(effect: Effect, material: &mut MaterialDesc, means: &mut Means) {
         Effect::NormalMaps => material.normal_map = None,
         Effect::EmittingSurfaces => material.emission.factor = [0.0; 3],
         Effect::TexturedEmission => means.of_color(&mut material.emission),
+        Effect::CoatedEmission if material.emission.factor != [0.0; 3] => {
+            change_surface(Effect::ClearCoat, &mut material.surface);
+        }
         Effect::AlphaMasks if matches!(material.alpha_mode, AlphaMode::Mask(_)) => {
             material.alpha_mode = AlphaMode::Opaque;
         }

@@ -67,6 +67,7 @@ effects! {
     BackFaceCulling = "back-face culling",
     EmittingSurfaces = "emitting surfaces",
     TexturedEmission = "textured emission",
+    CoatedEmission = "emission under a clear coat",
     SolidAngleSampling = "lights sampled by solid angle",
     PointLights = "point lights",
     SpotLights = "spot lights",

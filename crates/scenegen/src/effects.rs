@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use residual_render::bsdf::AnyInterface;
 use residual_render::program::{
-    AlphaTestNode, BsdfNode, CameraNode, FresnelNode, ImageNode, LayerFrameNode, Leaf, LightNode,
-    Program, RoughnessNode, Source, SourceNode,
+    AlphaTestNode, BsdfNode, CameraNode, ColorNode, FresnelNode, ImageNode, LayerFrameNode, Leaf,
+    LightNode, Program, RoughnessNode, Source, SourceNode,
 };
 use residual_render::texture::{AnyFilter, AnyFormat, AnyWrap, UvMap};
 
@@ -115,8 +115,12 @@ impl Effects {
         }
         if let Some(emission) = program.emission {
             self.add(Effect::EmittingSurfaces, place);
-            if has_image(&program.inputs[emission.radiance.0].source) {
+            let source = &program.inputs[emission.radiance.0].source;
+            if has_image(source) {
                 self.add(Effect::TexturedEmission, place);
+            }
+            if matches!(source, SourceNode::Color(ColorNode::UnderCoat { .. })) {
+                self.add(Effect::CoatedEmission, place);
             }
         }
         if let Some(test) = &program.alpha_test {

@@ -1,9 +1,9 @@
 //! A smooth dielectric: glass, water, or a thin sheet of either.
 
-use super::fresnel::fresnel;
 use super::interface::{Interface, clear_albedo, radiance_scale, relative_ior};
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::{Bundle, Domain};
+use crate::math::fresnel::fresnel;
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;

@@ -4,9 +4,10 @@
 //! made to have the least greatest error against quadrature over the slopes of facets. They are off by less than 5e-4 of the
 //! light for all angles and for roughness from 0.01 to 1; a test, which integrates the lobes themselves, holds them to 8e-4.
 
-use super::fresnel::{SchlickCurve, schlick_weight};
+use super::fresnel::SchlickCurve;
 use super::ggx::Ggx;
 use crate::domain::{Domain, Real};
+use crate::math::fresnel::schlick_weight;
 use crate::math::{Color, Vec3};
 
 /// What a GGX surface returns towards a direction, by a single reflection.

@@ -1,6 +1,7 @@
-//! How much a smooth interface reflects: the Fresnel equations of dielectrics, and Schlick's approximation with a colour.
+//! How much facets reflect: Schlick's approximation with a colour.
 
 use crate::domain::Domain;
+use crate::math::fresnel::schlick_weight;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 use crate::texture::{ColorSource, ScalarSource};
@@ -46,14 +47,6 @@ impl<D: Domain> SchlickCurve<D> {
     }
 }
 
-/// (1 − cos)⁵, Schlick's weight.
-#[inline(always)]
-pub fn schlick_weight<D: Domain>(d: D, cos: D::F) -> D::F {
-    let m = d.max(d.lit(1.0) - cos, d.lit(0.0));
-    let m2 = m * m;
-    m2 * m2 * m
-}
-
 impl<N, G> Schlick<N, G> {
     #[inline(always)]
     fn values<D: Domain>(&self, d: D, surface: &Surface<D>) -> SchlickCurve<D>
@@ -78,28 +71,4 @@ impl<D: Domain, N: ColorSource<D>, G: ScalarSource<D>> Fresnel<D> for Schlick<N,
     fn curve(&self, d: D, surface: &Surface<D>, _: D::F) -> SchlickCurve<D> {
         self.values(d, surface)
     }
-}
-
-/// Fresnel reflectance of unpolarised light and the quantity √(η² − 1 + cos²), η times the cosine of the
-/// refracted ray; `cos` ≥ 0, `eta` = index beyond ÷ index here. On total reflection (1, 0).
-///
-/// Written without cancellation near η = 1 (hard case M-06).
-#[inline(always)]
-pub fn fresnel<D: Domain>(d: D, cos: D::F, eta: D::F) -> (D::F, D::F) {
-    let one = d.lit(1.0);
-    let q = (eta - one) * (eta + one);
-    let c2 = cos * cos;
-    let g2 = q + c2;
-    let total = d.le(g2, d.lit(0.0));
-    let g = d.sqrt(d.max(g2, d.lit(0.0)));
-    let eta2 = eta * eta;
-    let perpendicular = cos + g;
-    let parallel = d.fma(eta2, cos, g);
-    let rs = q / (perpendicular * perpendicular);
-    let rp = q * d.fma(eta2 + one, c2, -one) / (parallel * parallel);
-    let reflectance = d.lit(0.5) * d.fma(rs, rs, rp * rp);
-    (
-        d.select(total, one, d.min(reflectance, one)),
-        d.select(total, d.lit(0.0), g),
-    )
 }

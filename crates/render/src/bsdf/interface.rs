@@ -1,7 +1,7 @@
 //! What lies behind a transmitting surface: a body, or nothing.
 
-use super::fresnel::fresnel;
 use crate::domain::Domain;
+use crate::math::fresnel::fresnel;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
 

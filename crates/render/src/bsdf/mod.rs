@@ -36,7 +36,7 @@ pub use dielectric::Dielectric;
 pub use diffuse::{Black, Diffuse};
 pub use diffuse_transmission::DiffuseTransmission;
 pub use directional_albedo::DirectionalAlbedo;
-pub use fresnel::{Fresnel, Schlick, SchlickCurve, fresnel, schlick_weight};
+pub use fresnel::{Fresnel, Schlick, SchlickCurve};
 pub use glossy::Glossy;
 pub use henyey_greenstein::HenyeyGreenstein;
 pub use interface::{AnyInterface, Interface, Solid, SolidAmongSolids, Thin};

@@ -3,12 +3,12 @@
 use fearless_simd::{Level, dispatch};
 
 use super::albedo_table::{ALBEDO_TABLE_WORDS, albedo_table, tabulated_albedo};
-use super::fresnel::fresnel;
 use super::ggx::{Ggx, half_cosine, reflect};
 use super::interface::{Interface, clear_albedo, radiance_scale, relative_ior};
 use super::roughness::Roughness;
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::{Buffers, Bundle, Domain, Lanes, Lanes8, MAX_LANES};
+use crate::math::fresnel::fresnel;
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;

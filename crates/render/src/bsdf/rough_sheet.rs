@@ -1,12 +1,12 @@
 //! A thin sheet of a rough dielectric: a frosted pane.
 
 use super::directional_albedo::DirectionalAlbedo;
-use super::fresnel::fresnel;
 use super::ggx::{Ggx, half_cosine, reflect};
 use super::interface::clear_albedo;
 use super::roughness::Roughness;
 use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
 use crate::domain::{Bundle, Domain};
+use crate::math::fresnel::fresnel;
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;

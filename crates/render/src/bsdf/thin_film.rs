@@ -1,8 +1,9 @@
 //! Iridescence: the reflectance of facets under a thin film.
 
-use super::fresnel::{Fresnel, SchlickCurve, schlick_weight};
+use super::fresnel::{Fresnel, SchlickCurve};
 use crate::domain::Domain;
 use crate::math::elementary::{exp2, sincos_turns};
+use crate::math::fresnel::schlick_weight;
 use crate::math::spectrum::rgb_of_xyz;
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};

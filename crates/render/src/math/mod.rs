@@ -2,6 +2,7 @@
 
 pub mod elementary;
 pub mod frame;
+pub mod fresnel;
 pub mod spectrum;
 pub mod spherical_triangle;
 pub mod vec3;

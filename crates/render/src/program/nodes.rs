@@ -68,6 +68,7 @@ nodes! {
         Image = image: ImageNode,
         Gray(number: Box<ScalarNode>),
         Product(a: Box<ColorNode>, b: Box<ColorNode>),
+        UnderCoat { color: Box<ColorNode>, normal: Box<ScalarNode>, grazing: Box<ScalarNode> },
         Checkerboard { even: Box<ColorNode>, odd: Box<ColorNode>, uv: UvMap },
     }
 

@@ -11,6 +11,7 @@ mod image;
 mod params;
 mod srgb;
 mod texel_format;
+mod under_coat;
 mod uv_map;
 mod wrapping;
 
@@ -21,6 +22,7 @@ pub use image::Image;
 pub use params::{ColorParam, ImageParam, TransformParam};
 pub use srgb::{srgb_code, srgb_decoded, srgb_table};
 pub use texel_format::{AnyFormat, LinearFloat, LinearHalf, LinearRgba8, SrgbRgba8, TexelFormat};
+pub use under_coat::UnderCoat;
 pub use uv_map::UvMap;
 pub use wrapping::{
     AnyWrap, BlackBorder, Clamp, FlatBorder, MirroredRepeat, Repeat, WhiteBorder, Wrapping,

@@ -250,6 +250,27 @@ impl Builder<'_> {
         coated(sheen, base)
     }
 
+    /// What a clear coat lets through of what is emitted under it.
+    pub(super) fn emission_under_clearcoat(
+        &mut self,
+        surface: &SurfaceDesc,
+        emission: ColorNode,
+    ) -> ColorNode {
+        let SurfaceDesc::MetallicRoughness(surface) = surface else {
+            return emission;
+        };
+        let strength = self.sources.scalar(&surface.clearcoat);
+        if strength == ZERO {
+            return emission;
+        }
+        let normal = self.sources.number(CLEARCOAT);
+        ColorNode::UnderCoat {
+            color: Box::new(emission),
+            normal: Box::new(self.sources.scalar_product(normal, strength.clone())),
+            grazing: Box::new(strength),
+        }
+    }
+
     fn under_clearcoat(
         &mut self,
         surface: &MetallicRoughness,

@@ -77,7 +77,7 @@ impl Builder<'_> {
     }
 
     fn emission(&mut self, desc: &MaterialDesc) -> Option<EmissionNode> {
-        let emission = match desc.surface {
+        let emission = match &desc.surface {
             SurfaceDesc::Unlit => self.sources.tinted_color(&desc.emission),
             _ => self.sources.full_color(&desc.emission),
         };
@@ -88,6 +88,7 @@ impl Builder<'_> {
             }
             return None;
         }
+        let emission = self.emission_under_clearcoat(&desc.surface, emission);
         Some(EmissionNode {
             radiance: self.color("emission", emission),
             double_sided: desc.double_sided,

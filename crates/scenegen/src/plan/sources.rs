@@ -158,7 +158,7 @@ impl<'a> Sources<'a> {
         }
     }
 
-    fn scalar_product(&self, a: ScalarNode, b: ScalarNode) -> ScalarNode {
+    pub(super) fn scalar_product(&self, a: ScalarNode, b: ScalarNode) -> ScalarNode {
         const ONE: ScalarNode = ScalarNode::Const(1.0);
         const ZERO: ScalarNode = ScalarNode::Const(0.0);
         if a == ZERO || b == ZERO {
