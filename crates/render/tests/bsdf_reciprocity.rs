@@ -1,8 +1,8 @@
 //! What no BSDF may do: depend on the direction of light (hard case M-05).
 
 use residual_render::bsdf::{
-    Bsdf, BsdfKind, BsdfSample, BsdfValue, Diffuse, DirectionalAlbedo, Fresnel, Mix, RoughDiffuse,
-    Roughness, Sum,
+    Bsdf, BsdfKind, BsdfProposal, BsdfValue, Diffuse, DirectionalAlbedo, Fresnel, Mix,
+    RoughDiffuse, Roughness, Sum,
 };
 use residual_render::domain::Scalar;
 use residual_render::math::vec3::vec3;
@@ -68,14 +68,14 @@ impl<'a> Bsdf<Scalar<'a>> for SingleReflection {
         BsdfValue { value, pdf }
     }
 
-    fn sample(
+    fn propose(
         &self,
         d: Scalar<'a>,
         surface: &Surface<Scalar<'a>>,
         wo: Vec3<f32>,
         u: [f32; 3],
-    ) -> BsdfSample<Scalar<'a>> {
-        self.0.sample(d, surface, wo, u)
+    ) -> BsdfProposal<Scalar<'a>> {
+        self.0.propose(d, surface, wo, u)
     }
 
     fn albedo(&self, d: Scalar<'a>, surface: &Surface<Scalar<'a>>, wo: Vec3<f32>) -> Color<f32> {

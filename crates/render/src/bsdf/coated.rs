@@ -1,7 +1,7 @@
 //! A layer over another: coats, sheen.
 
 use super::combine::Blend;
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfValue};
 use crate::domain::Domain;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
@@ -53,9 +53,9 @@ impl<D: Domain, C: Bsdf<D>, B: Bsdf<D>> Bsdf<D> for Coated<C, B> {
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         self.blend(d, surface, wo)
-            .sample(d, surface, wo, u, (&self.base, &self.coat))
+            .propose(d, surface, wo, u, (&self.base, &self.coat))
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Two BSDFs on one surface: mixed by a weight, or added.
 
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfValue};
 use crate::domain::Domain;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
@@ -50,16 +50,16 @@ impl<F: crate::domain::Real> Blend<F> {
         }
     }
 
-    /// One-sample multiple importance sampling: a direction from either, weighed by both.
+    /// A direction from either. What it is worth is asked of both: one-sample multiple importance sampling.
     #[inline(always)]
-    pub(super) fn sample<D: Domain<F = F>, A: Bsdf<D>, B: Bsdf<D>>(
+    pub(super) fn propose<D: Domain<F = F>, A: Bsdf<D>, B: Bsdf<D>>(
         &self,
         d: D,
         surface: &Surface<D>,
         wo: Vec3<F>,
         u: [F; 3],
         (a, b): (&A, &B),
-    ) -> BsdfSample<D> {
+    ) -> BsdfProposal<D> {
         let one = d.lit(1.0);
         let tiny = d.lit(1e-9);
         let p = self.probability_b;
@@ -70,30 +70,13 @@ impl<F: crate::domain::Real> Blend<F> {
         let u = [u[0], u[1], d.min(rest, d.lit(1.0 - 1.0 / 16_777_216.0))];
         let chosen = d.branch(
             second,
-            || b.sample(d, surface, wo, u),
-            || a.sample(d, surface, wo, u),
+            || b.propose(d, surface, wo, u),
+            || a.propose(d, surface, wo, u),
         );
         let factor = d.select(second, self.factor_b, self.factor_a);
-        let alone = chosen.weight.scale(factor / probability);
-        if !a.kind().union(b.kind()).scatters {
-            return BsdfSample {
-                weight: alone,
-                ..chosen
-            };
-        }
-        let both = self.eval(
-            d,
-            a.eval(d, surface, wo, chosen.wi),
-            b.eval(d, surface, wo, chosen.wi),
-        );
-        let possible = d.lt(d.lit(0.0), both.pdf) & d.lt(d.lit(0.0), chosen.pdf);
-        let inverse = one / d.select(possible, both.pdf, one);
-        let together = both.value.scale(inverse).only(d, possible);
-        BsdfSample {
-            wi: chosen.wi,
-            weight: <Vec3<F> as crate::domain::Bundle<D>>::choose(d, chosen.delta, alone, together),
-            pdf: d.select(chosen.delta, d.lit(0.0), both.pdf),
-            delta: chosen.delta,
+        BsdfProposal {
+            weight: chosen.weight.scale(factor / probability),
+            ..chosen
         }
     }
 }
@@ -124,9 +107,9 @@ impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, W: ScalarSource<D>> Bsdf<D> for Mix<A, B
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         self.blend(d, surface)
-            .sample(d, surface, wo, u, (&self.a, &self.b))
+            .propose(d, surface, wo, u, (&self.a, &self.b))
     }
 
     #[inline(always)]
@@ -173,9 +156,9 @@ impl<D: Domain, A: Bsdf<D>, B: Bsdf<D>, P: ScalarSource<D>> Bsdf<D> for Sum<A, B
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         self.blend(d, surface)
-            .sample(d, surface, wo, u, (&self.a, &self.b))
+            .propose(d, surface, wo, u, (&self.a, &self.b))
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! A smooth dielectric: glass, water, or a thin sheet of either.
 
 use super::interface::{Interface, clear_albedo, radiance_scale, relative_ior};
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfValue};
 use crate::domain::{Bundle, Domain};
 use crate::math::fresnel::fresnel;
 use crate::math::vec3::vec3;
@@ -39,7 +39,7 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         let one = d.lit(1.0);
         let eta = self.eta(d, surface);
         let (reflectance, g) = fresnel(d, wo.z, eta);
@@ -56,12 +56,11 @@ impl<D: Domain, C: ColorSource<D>, I: ScalarSource<D>, K: Interface> Bsdf<D>
             (-wo, tint)
         };
         let mirror = d.lt(u[2], reflectance);
-        BsdfSample {
-            wi: Vec3::choose(d, mirror, reflected, transmitted),
-            weight: Vec3::choose(d, mirror, Vec3::splat(one), weight),
-            pdf: d.lit(0.0),
-            delta: d.truth(true),
-        }
+        BsdfProposal::of_delta(
+            d,
+            Vec3::choose(d, mirror, reflected, transmitted),
+            Vec3::choose(d, mirror, Vec3::splat(one), weight),
+        )
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Lambert's diffuse reflection, and the surface that reflects nothing.
 
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue};
 use crate::domain::Domain;
 use crate::math::vec3::vec3;
 use crate::math::warp::{FRAC_1_PI, cosine_hemisphere, cosine_hemisphere_pdf};
@@ -26,8 +26,14 @@ impl<D: Domain, C: ColorSource<D>> Bsdf<D> for Diffuse<C> {
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, _: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+    fn propose(&self, d: D, _: &Surface<D>, _: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         let wi = cosine_hemisphere(d, [u[0], u[1]]);
+        BsdfProposal::of_lobe(d, wi, d.lt(d.lit(0.0), wi.z))
+    }
+
+    #[inline(always)]
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+        let BsdfProposal { wi, .. } = self.propose(d, surface, wo, u);
         BsdfSample {
             wi,
             weight: self.albedo.color(d, surface),
@@ -61,14 +67,9 @@ impl<D: Domain> Bsdf<D> for Black {
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, _: &Surface<D>, _: Vec3<D::F>, _: [D::F; 3]) -> BsdfSample<D> {
-        let zero = d.lit(0.0);
-        BsdfSample {
-            wi: vec3(zero, zero, d.lit(1.0)),
-            weight: Vec3::splat(zero),
-            pdf: zero,
-            delta: d.truth(false),
-        }
+    fn propose(&self, d: D, _: &Surface<D>, _: Vec3<D::F>, _: [D::F; 3]) -> BsdfProposal<D> {
+        let up = vec3(d.lit(0.0), d.lit(0.0), d.lit(1.0));
+        BsdfProposal::of_lobe(d, up, d.truth(false))
     }
 
     #[inline(always)]

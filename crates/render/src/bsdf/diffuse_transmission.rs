@@ -1,6 +1,6 @@
 //! Diffuse transmission: paper, leaves, lamp shades.
 
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue};
 use crate::domain::Domain;
 use crate::math::vec3::vec3;
 use crate::math::warp::{FRAC_1_PI, cosine_hemisphere, cosine_hemisphere_pdf};
@@ -26,12 +26,18 @@ impl<D: Domain, C: ColorSource<D>> Bsdf<D> for DiffuseTransmission<C> {
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, _: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+    fn propose(&self, d: D, _: &Surface<D>, _: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         let w = cosine_hemisphere(d, [u[0], u[1]]);
+        BsdfProposal::of_lobe(d, vec3(w.x, w.y, -w.z), d.lt(d.lit(0.0), w.z))
+    }
+
+    #[inline(always)]
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+        let BsdfProposal { wi, .. } = self.propose(d, surface, wo, u);
         BsdfSample {
-            wi: vec3(w.x, w.y, -w.z),
+            wi,
             weight: self.color.color(d, surface),
-            pdf: cosine_hemisphere_pdf(d, w.z),
+            pdf: cosine_hemisphere_pdf(d, -wi.z),
             delta: d.truth(false),
         }
     }

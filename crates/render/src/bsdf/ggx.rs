@@ -139,7 +139,7 @@ impl<F: crate::domain::Real> Ggx<F> {
     ) -> (F, F) {
         let zero = d.lit(0.0);
         let one = d.lit(1.0);
-        let above = d.lt(zero, wo.z) & d.lt(zero, wi.z);
+        let above = are_above(d, wo, wi);
         let common = self.distribution(d, h) / (d.lit(4.0) * d.max(wo.z, d.lit(1e-9)));
         let out = one + self.lambda(d, wo);
         let value = common / (out + self.lambda(d, wi));
@@ -159,7 +159,7 @@ impl<F: crate::domain::Real> Ggx<F> {
         h: Vec3<F>,
     ) -> (F, F) {
         let zero = d.lit(0.0);
-        let above = d.lt(zero, wo.z) & d.lt(zero, wi.z);
+        let above = are_above(d, wo, wi);
         let distribution = self.distribution(d, h);
         let masking = d.lit(1.0) + self.lambda(d, wo) + self.lambda(d, wi);
         let value = distribution / (d.lit(4.0) * d.max(wo.z, d.lit(1e-9)) * masking);
@@ -191,6 +191,12 @@ impl<F: crate::domain::Real> Ggx<F> {
         let weight = out / (out + self.lambda(d, wi));
         d.select(d.lt(d.lit(0.0), wi.z), weight, d.lit(0.0))
     }
+}
+
+/// Whether both directions are above the surface.
+#[inline(always)]
+pub fn are_above<D: Domain>(d: D, wo: Vec3<D::F>, wi: Vec3<D::F>) -> D::M {
+    d.lt(d.lit(0.0), wo.z) & d.lt(d.lit(0.0), wi.z)
 }
 
 /// `v` mirrored about the unit normal `h`.

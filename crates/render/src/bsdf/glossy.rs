@@ -2,9 +2,9 @@
 
 use super::directional_albedo::DirectionalAlbedo;
 use super::fresnel::Fresnel;
-use super::ggx::{half_cosine, reflect};
+use super::ggx::{are_above, half_cosine, reflect};
 use super::roughness::Roughness;
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue};
 use crate::domain::Domain;
 use crate::math::{Color, Vec3};
 use crate::surface::Surface;
@@ -34,6 +34,14 @@ impl<D: Domain, F: Fresnel<D>, R: Roughness<D>> Bsdf<D> for Glossy<F, R> {
             value: (fresnel * all).scale(value),
             pdf,
         }
+    }
+
+    #[inline(always)]
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
+        let ggx = self.roughness.microfacets(d, surface);
+        let h = ggx.sample_reflecting_normal(d, wo, [u[0], u[1]]);
+        let wi = reflect(d, wo, h);
+        BsdfProposal::of_lobe(d, wi, are_above(d, wo, wi))
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! The phase function of Henyey and Greenstein (1941): how small particles scatter light.
 
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue};
 use crate::domain::Domain;
 use crate::math::elementary::sincos_turns;
 use crate::math::vec3::vec3;
@@ -42,7 +42,7 @@ impl<D: Domain> Bsdf<D> for HenyeyGreenstein<D::F> {
 
     /// The inverse of the distribution of cosines, of which g is cancelled, so that it may be 0.
     #[inline(always)]
-    fn sample(&self, d: D, _: &Surface<D>, _: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+    fn propose(&self, d: D, _: &Surface<D>, _: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         let (g, one, half) = (self.0, d.lit(1.0), d.lit(0.5));
         let a = d.lit(2.0) * u[0] - one;
         let (aa, gg) = (a * a, g * g);
@@ -52,10 +52,16 @@ impl<D: Domain> Bsdf<D> for HenyeyGreenstein<D::F> {
         let cos = d.max(d.min(cos, one), -one);
         let sin = d.sqrt(d.max(one - cos * cos, d.lit(0.0)));
         let (y, x) = sincos_turns(d, u[1]);
+        BsdfProposal::of_lobe(d, vec3(sin * x, sin * y, -cos), d.truth(true))
+    }
+
+    #[inline(always)]
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+        let BsdfProposal { wi, .. } = self.propose(d, surface, wo, u);
         BsdfSample {
-            wi: vec3(sin * x, sin * y, -cos),
-            weight: Vec3::splat(one),
-            pdf: self.density(d, cos),
+            wi,
+            weight: Vec3::splat(d.lit(1.0)),
+            pdf: self.density(d, -wi.z),
             delta: d.truth(false),
         }
     }

@@ -1,6 +1,6 @@
 //! A perfect mirror.
 
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfValue};
 use crate::domain::Domain;
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
@@ -21,13 +21,9 @@ impl<D: Domain, C: ColorSource<D>> Bsdf<D> for Mirror<C> {
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, _: [D::F; 3]) -> BsdfSample<D> {
-        BsdfSample {
-            wi: vec3(-wo.x, -wo.y, wo.z),
-            weight: self.reflectance.color(d, surface),
-            pdf: d.lit(0.0),
-            delta: d.truth(true),
-        }
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, _: [D::F; 3]) -> BsdfProposal<D> {
+        let reflectance = self.reflectance.color(d, surface);
+        BsdfProposal::of_delta(d, vec3(-wo.x, -wo.y, wo.z), reflectance)
     }
 
     #[inline(always)]

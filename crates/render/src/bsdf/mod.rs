@@ -63,6 +63,19 @@ pub struct BsdfValue<D: Domain> {
     pub pdf: D::F,
 }
 
+/// A direction that a BSDF proposes, without what it is worth.
+#[derive(Clone, Copy, Debug)]
+pub struct BsdfProposal<D: Domain> {
+    /// The direction.
+    pub wi: Vec3<D::F>,
+    /// f·|cos θᵢ| ÷ probability of a delta lobe; 0 of others, which are evaluated.
+    pub weight: Color<D::F>,
+    /// The direction came from a delta lobe.
+    pub delta: D::M,
+    /// Sampling succeeded: a reflected direction is above the surface, a transmitted one below.
+    pub possible: D::M,
+}
+
 /// A sampled direction.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample<D: Domain> {
@@ -100,8 +113,38 @@ impl BsdfKind {
 pub trait Bsdf<D: Domain> {
     /// Value and density for a pair of directions.
     fn eval(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D>;
-    /// A direction, from two numbers for the direction and one for the choice of a lobe.
-    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D>;
+    /// Proposes a direction, from two numbers for the direction and one for the choice of a lobe.
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D>;
+    /// The proposed direction with what it is worth: the quotient of what [`eval`](Bsdf::eval) says of it, unless the BSDF knows it
+    /// in closed form.
+    #[inline(always)]
+    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+        let BsdfProposal {
+            wi,
+            weight,
+            delta,
+            possible,
+        } = self.propose(d, surface, wo, u);
+        let (zero, one) = (d.lit(0.0), d.lit(1.0));
+        if !self.kind().scatters {
+            return BsdfSample {
+                wi,
+                weight,
+                pdf: zero,
+                delta,
+            };
+        }
+        let BsdfValue { value, pdf } = self.eval(d, surface, wo, wi);
+        let possible = d.lt(zero, pdf) & possible;
+        let inverse = one / d.select(possible, pdf, one);
+        let quotient = value.scale(inverse).only(d, possible);
+        BsdfSample {
+            wi,
+            weight: Vec3::choose(d, delta, weight, quotient),
+            pdf: d.select(delta, zero, pdf),
+            delta,
+        }
+    }
     /// The share of light that returns towards `wo`: what is left for layers below ([`Coated`]), and what Open Image Denoise
     /// wants as the albedo of a first hit. Between 0 and 1 where the sources are. Where the true share has no closed form it
     /// is a fit, or, of lobes that are no coats, an estimate. It may go with what is seen through a surface: a window's is its
@@ -140,14 +183,38 @@ impl<D: Domain> BsdfValue<D> {
     }
 }
 
-impl<D: Domain> Bundle<D> for BsdfSample<D> {
+impl<D: Domain> BsdfProposal<D> {
+    /// From a lobe that can be evaluated.
+    #[inline(always)]
+    pub fn of_lobe(d: D, wi: Vec3<D::F>, possible: D::M) -> Self {
+        Self {
+            wi,
+            weight: Vec3::splat(d.lit(0.0)),
+            delta: d.truth(false),
+            possible,
+        }
+    }
+
+    /// From a delta lobe.
+    #[inline(always)]
+    pub fn of_delta(d: D, wi: Vec3<D::F>, weight: Color<D::F>) -> Self {
+        Self {
+            wi,
+            weight,
+            delta: d.truth(true),
+            possible: d.truth(true),
+        }
+    }
+}
+
+impl<D: Domain> Bundle<D> for BsdfProposal<D> {
     #[inline(always)]
     fn choose(d: D, mask: D::M, a: Self, b: Self) -> Self {
         Self {
             wi: Vec3::choose(d, mask, a.wi, b.wi),
             weight: Vec3::choose(d, mask, a.weight, b.weight),
-            pdf: d.select(mask, a.pdf, b.pdf),
             delta: d.select_mask(mask, a.delta, b.delta),
+            possible: d.select_mask(mask, a.possible, b.possible),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A lobe whose normal is not that of the surface it is on: clear coats over bumpy bases, or with bumps of their own.
 
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue};
 use crate::domain::Domain;
 use crate::math::{Color, Frame, Vec3};
 use crate::surface::{Surface, decode_normal};
@@ -74,6 +74,14 @@ impl<D: Domain, B: Bsdf<D>, N: LayerFrame<D>> Bsdf<D> for OwnNormal<B, N> {
         let (frame, wo) = self.turned(d, surface, wo);
         let wi = frame.to_local(d, surface.frame.to_world(wi));
         self.bsdf.eval(d, surface, wo, wi)
+    }
+
+    #[inline(always)]
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
+        let (frame, wo) = self.turned(d, surface, wo);
+        let proposal = self.bsdf.propose(d, surface, wo, u);
+        let wi = surface.frame.to_local(d, frame.to_world(proposal.wi));
+        BsdfProposal { wi, ..proposal }
     }
 
     #[inline(always)]

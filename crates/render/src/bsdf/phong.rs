@@ -1,7 +1,7 @@
 //! The modified Phong lobe (Lafortune and Willems 1994, "Using the Modified Phong Reflectance Model for
 //! Physically Based Rendering"): what OBJ's `Ks` and `Ns` mean.
 
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfValue};
 use crate::domain::Domain;
 use crate::math::elementary::{pow, sincos_turns};
 use crate::math::vec3::vec3;
@@ -34,7 +34,7 @@ impl<D: Domain, C: ColorSource<D>, E: ScalarSource<D>> Bsdf<D> for Phong<C, E> {
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         let n = self.exponent.scalar(d, surface);
         let one = d.lit(1.0);
         let cos = pow(d, one - u[0], one / (n + one));
@@ -42,15 +42,7 @@ impl<D: Domain, C: ColorSource<D>, E: ScalarSource<D>> Bsdf<D> for Phong<C, E> {
         let (s, c) = sincos_turns(d, u[1]);
         let around = Frame::around(d, vec3(-wo.x, -wo.y, wo.z));
         let wi = around.to_world(vec3(sin * c, sin * s, cos));
-        let BsdfValue { value, pdf } = self.eval(d, surface, wo, wi);
-        let possible = d.lt(d.lit(0.0), pdf);
-        let inverse = one / d.select(possible, pdf, one);
-        BsdfSample {
-            wi,
-            weight: value.scale(inverse).only(d, possible),
-            pdf,
-            delta: d.truth(false),
-        }
+        BsdfProposal::of_lobe(d, wi, d.lt(d.lit(0.0), wi.z))
     }
 
     #[inline(always)]

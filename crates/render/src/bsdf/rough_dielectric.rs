@@ -3,10 +3,10 @@
 use fearless_simd::{Level, dispatch};
 
 use super::albedo_table::{ALBEDO_TABLE_WORDS, albedo_table, tabulated_albedo};
-use super::ggx::{Ggx, half_cosine, reflect};
+use super::ggx::{Ggx, are_above, half_cosine, reflect};
 use super::interface::{Interface, clear_albedo, radiance_scale, relative_ior};
 use super::roughness::Roughness;
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue};
 use crate::domain::{Buffers, Bundle, Domain, Lanes, Lanes8, MAX_LANES};
 use crate::math::fresnel::fresnel;
 use crate::math::vec3::vec3;
@@ -204,6 +204,18 @@ where
             value: Vec3::choose(d, below, tint.scale(through), returned).scale(all),
             pdf: d.select(below, through_pdf, pdf * reflectance),
         }
+    }
+
+    #[inline(always)]
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
+        let event = self.facets(d, surface).event(d, wo, [u[0], u[1]]);
+        let is_mirrored = d.lt(u[2], event.reflectance);
+        let below = d.lt(event.transmitted.z, d.lit(0.0));
+        BsdfProposal::of_lobe(
+            d,
+            Vec3::choose(d, is_mirrored, event.reflected, event.transmitted),
+            d.select_mask(is_mirrored, are_above(d, wo, event.reflected), below),
+        )
     }
 
     #[inline(always)]

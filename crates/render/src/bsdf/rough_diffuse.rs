@@ -1,7 +1,7 @@
 //! Diffuse reflection by rough surfaces: clay, sand, the moon.
 
 use super::azimuth::Azimuth;
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfValue};
 use crate::domain::{Bundle, Domain};
 use crate::math::elementary::{pow, sincos_turns};
 use crate::math::vec3::vec3;
@@ -98,7 +98,7 @@ impl<D: Domain> Facets<D> {
 
 /// The lobe that directions are drawn from, seen from a direction: mostly a cosine lobe that is transformed linearly and of
 /// which only what ends above the surface is drawn, and now and then all directions alike.
-struct Proposal<D: Domain> {
+struct ClippedLobe<D: Domain> {
     azimuth: Azimuth<D::F>,
     /// The transformation x' = a·x + b·z, y' = c·y, z' = d·x + z.
     matrix: [D::F; 4],
@@ -110,7 +110,7 @@ struct Proposal<D: Domain> {
     uniform: D::F,
 }
 
-impl<D: Domain> Proposal<D> {
+impl<D: Domain> ClippedLobe<D> {
     #[inline(always)]
     fn new(d: D, wo: Vec3<D::F>, r: D::F) -> Self {
         let lit = |value| d.lit(value);
@@ -190,26 +190,15 @@ impl<D: Domain, C: ColorSource<D>, R: ScalarSource<D>> Bsdf<D> for RoughDiffuse<
         let cos = d.max(wi.z, d.lit(0.0)) * d.lit(FRAC_1_PI);
         BsdfValue {
             value: facets.reflectance(d, wo, wi, albedo).scale(cos),
-            pdf: Proposal::new(d, wo, facets.roughness).density(d, wi),
+            pdf: ClippedLobe::new(d, wo, facets.roughness).density(d, wi),
         }
     }
 
     #[inline(always)]
-    fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         let facets = Facets::new(d, self.roughness.scalar(d, surface));
-        let albedo = self.albedo.color(d, surface);
-        let proposal = Proposal::new(d, wo, facets.roughness);
-        let wi = proposal.sample(d, u);
-        let pdf = proposal.density(d, wi);
-        let possible = d.lt(d.lit(0.0), pdf);
-        let cos = d.max(wi.z, d.lit(0.0)) * d.lit(FRAC_1_PI);
-        let weight = cos / d.select(possible, pdf, d.lit(1.0));
-        BsdfSample {
-            wi,
-            weight: facets.reflectance(d, wo, wi, albedo).scale(weight),
-            pdf,
-            delta: d.truth(false),
-        }
+        let wi = ClippedLobe::new(d, wo, facets.roughness).sample(d, u);
+        BsdfProposal::of_lobe(d, wi, d.lt(d.lit(0.0), wi.z))
     }
 
     #[inline(always)]

@@ -1,10 +1,10 @@
 //! A thin sheet of a rough dielectric: a frosted pane.
 
 use super::directional_albedo::DirectionalAlbedo;
-use super::ggx::{Ggx, half_cosine, reflect};
+use super::ggx::{Ggx, are_above, half_cosine, reflect};
 use super::interface::clear_albedo;
 use super::roughness::Roughness;
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue};
 use crate::domain::{Bundle, Domain};
 use crate::math::fresnel::fresnel;
 use crate::math::vec3::vec3;
@@ -32,6 +32,39 @@ struct Facets<D: Domain> {
     tint: Color<D::F>,
     /// How much brighter all events together are than the first.
     all: D::F,
+}
+
+/// What a facet does whose normal was drawn.
+struct Event<D: Domain> {
+    normal: Vec3<D::F>,
+    /// Where light comes from that it reflects; what it transmits comes from below that.
+    reflected: Vec3<D::F>,
+    is_mirrored: D::M,
+    /// Probability of that.
+    share: D::F,
+}
+
+impl<D: Domain> Event<D> {
+    #[inline(always)]
+    fn direction(&self, d: D) -> Vec3<D::F> {
+        let Vec3 { x, y, z } = self.reflected;
+        Vec3::choose(d, self.is_mirrored, self.reflected, vec3(x, y, -z))
+    }
+}
+
+impl<D: Domain> Facets<D> {
+    #[inline(always)]
+    fn event(&self, d: D, wo: Vec3<D::F>, u: [D::F; 3]) -> Event<D> {
+        let h = self.ggx.sample_reflecting_normal(d, wo, [u[0], u[1]]);
+        let (reflectance, _) = fresnel(d, d.max(wo.dot(d, h), d.lit(0.0)), self.ior);
+        let is_mirrored = d.lt(u[2], reflectance);
+        Event {
+            normal: h,
+            reflected: reflect(d, wo, h),
+            is_mirrored,
+            share: d.select(is_mirrored, reflectance, d.lit(1.0) - reflectance),
+        }
+    }
 }
 
 impl<C, I, R> RoughSheet<C, I, R> {
@@ -78,20 +111,24 @@ where
     }
 
     #[inline(always)]
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
+        let facets = self.facets(d, surface, wo);
+        let event = facets.event(d, wo, u);
+        BsdfProposal::of_lobe(d, event.direction(d), are_above(d, wo, event.reflected))
+    }
+
+    #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         let facets = self.facets(d, surface, wo);
-        let h = facets.ggx.sample_reflecting_normal(d, wo, [u[0], u[1]]);
-        let (reflectance, _) = fresnel(d, d.max(wo.dot(d, h), d.lit(0.0)), facets.ior);
-        let is_mirrored = d.lt(u[2], reflectance);
-        let above = reflect(d, wo, h);
-        let (_, pdf) = facets.ggx.bounded_reflection(d, wo, above, h);
+        let event = facets.event(d, wo, u);
+        let above = event.reflected;
+        let (_, pdf) = facets.ggx.bounded_reflection(d, wo, above, event.normal);
         let white = Vec3::splat(d.lit(1.0));
-        let share = d.select(is_mirrored, reflectance, d.lit(1.0) - reflectance);
-        let color = Vec3::choose(d, is_mirrored, white, facets.tint);
+        let color = Vec3::choose(d, event.is_mirrored, white, facets.tint);
         BsdfSample {
-            wi: Vec3::choose(d, is_mirrored, above, vec3(above.x, above.y, -above.z)),
+            wi: event.direction(d),
             weight: color.scale(facets.ggx.bounded_weight(d, wo, above) * facets.all),
-            pdf: pdf * share,
+            pdf: pdf * event.share,
             delta: d.truth(false),
         }
     }

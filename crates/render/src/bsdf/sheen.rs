@@ -1,7 +1,7 @@
 //! Sheen of cloth: light that fibres scatter towards grazing angles.
 
 use super::azimuth::Azimuth;
-use super::{Bsdf, BsdfKind, BsdfSample, BsdfValue};
+use super::{Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue};
 use crate::domain::Domain;
 use crate::math::elementary::exp2;
 use crate::math::vec3::vec3;
@@ -116,6 +116,12 @@ impl<D: Domain, C: ColorSource<D>, R: ScalarSource<D>> Bsdf<D> for Sheen<C, R> {
             value: self.color.color(d, surface).scale(lobe.albedo * pdf),
             pdf,
         }
+    }
+
+    #[inline(always)]
+    fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
+        let wi = self.lobe(d, surface, wo).sample(d, [u[0], u[1]]);
+        BsdfProposal::of_lobe(d, wi, d.lt(d.lit(0.0), wi.z))
     }
 
     #[inline(always)]

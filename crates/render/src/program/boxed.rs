@@ -3,8 +3,8 @@
 use crate::alpha::AlphaTest;
 use crate::bsdf::ggx::Ggx;
 use crate::bsdf::{
-    AnyInterface, Bsdf, BsdfKind, BsdfSample, BsdfValue, Fresnel, LayerFrame, Roughness,
-    SchlickCurve,
+    AnyInterface, Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue, Fresnel, LayerFrame,
+    Roughness, SchlickCurve,
 };
 use crate::camera::{Camera, Sight};
 use crate::domain::Domain;
@@ -101,6 +101,7 @@ macro_rules! entered {
 
 entered!(Bsdf {
     fn eval(d, surface: &Surface<D>, wo: Vec3<D::F>, wi: Vec3<D::F>) -> BsdfValue<D>;
+    fn propose(d, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D>;
     fn sample(d, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D>;
     fn albedo(d, surface: &Surface<D>, wo: Vec3<D::F>) -> Color<D::F>;
     fn radiance_scale(d, surface: &Surface<D>, wi: Vec3<D::F>) -> Option<D::F>;
