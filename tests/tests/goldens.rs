@@ -41,6 +41,7 @@ goldens! {
     car_paint
     checkerboard
     clamp_wrap
+    coated_emission
     constants
     culling
     depth_of_field

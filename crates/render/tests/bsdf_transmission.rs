@@ -31,7 +31,7 @@ fn integrals<B: for<'a> Bsdf<Precise<'a>>>(
     is_front: bool,
 ) -> [[f64; MOMENTS]; 2] {
     const STEPS: usize = 2048;
-    const ANGLES: usize = 512;
+    const ANGLES: usize = 256;
     let buffers = data.buffers();
     let d = Precise::new(&buffers);
     let surface = match is_front {

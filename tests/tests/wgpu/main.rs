@@ -31,7 +31,7 @@ struct Machine {
 impl Machine {
     /// Of scenes that are much alike, every `step`-th is enough: software drivers take seconds to compile the kernels of each.
     fn step(&self) -> usize {
-        if self.gpu.adapter.is_software() { 3 } else { 1 }
+        if self.gpu.adapter.is_software() { 4 } else { 1 }
     }
 
     /// Scenes of more programs are left to other adapters: software drivers take minutes to compile theirs.

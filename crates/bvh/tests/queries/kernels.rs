@@ -26,7 +26,9 @@ struct Scene {
     mesh: Mesh,
     center: f32,
     best: best::Trees,
-    others: others::Trees,
+    sse2: sse2::Trees,
+    sse4_2: sse4_2::Trees,
+    avx2: avx2::Trees,
     alone: Vec<Bvh<4>>,
 }
 
@@ -63,21 +65,29 @@ combinations!(best:
     n2p1(2, 1): Watertight [Single, Phased];
     n2p4(2, 4): Exact [Hybrid::<8>];
     n4p1(4, 1): Exact [Hybrid::<8>];
-    n4p4(4, 4): Fast [Single, Phased, Packets::<4>, Hybrid::<4>], Watertight [Hybrid::<4>];
+    n4p4(4, 4): Fast [Single, Packets::<4>, Hybrid::<4>], Watertight [Hybrid::<4>];
     n4p8(4, 8): Watertight [Hybrid::<16>];
     n8p4(8, 4): Exact [Single, Phased];
-    n8p8(8, 8): Watertight [Single, Phased, Packets::<8>, Hybrid::<8>], Fast [Hybrid::<8>], Exact [Hybrid::<8>];
+    n8p8(8, 8): Watertight [Packets::<8>, Hybrid::<8>], Fast [Hybrid::<8>], Exact [Hybrid::<8>];
     n8p16(8, 16): Watertight [Single, Phased];
     n16p8(16, 8): Watertight [Hybrid::<8>];
-    n16p16(16, 16): Exact [Single, Phased, Packets::<16>, Hybrid::<16>], Fast [Single, Phased];
+    n16p16(16, 16): Exact [Packets::<16>, Hybrid::<16>], Fast [Single, Phased];
     n2p8(2, 8): Watertight [OneByOne];
     n4p16(4, 16): Exact [OneByOne];
     n8p1(8, 1): Exact [OneByOne];
     n16p4(16, 4): Watertight [OneByOne];
 );
-// For the lesser ones: the kernel that calls the others.
-combinations!(others:
-    n4p4(4, 4): Fast [Hybrid::<4>], Exact [Hybrid::<4>];
+// For the lesser ones: the kernel that calls the others, in all precisions between them.
+combinations!(sse2:
+    n4p4(4, 4): Exact [Hybrid::<4>];
+    n8p8(8, 8): Watertight [Hybrid::<8>];
+);
+combinations!(sse4_2:
+    n4p4(4, 4): Fast [Hybrid::<4>];
+    n8p8(8, 8): Watertight [Hybrid::<8>];
+);
+combinations!(avx2:
+    n4p4(4, 4): Fast [Hybrid::<4>];
     n8p8(8, 8): Watertight [Hybrid::<8>];
 );
 
@@ -178,7 +188,9 @@ impl Scene {
         Scene {
             center,
             best: best::Trees::new(&mesh, quality),
-            others: others::Trees::new(&mesh, quality),
+            sse2: sse2::Trees::new(&mesh, quality),
+            sse4_2: sse4_2::Trees::new(&mesh, quality),
+            avx2: avx2::Trees::new(&mesh, quality),
             alone: mesh
                 .triangles
                 .iter()
@@ -275,15 +287,15 @@ impl Scene {
         {
             if let Some(simd) = level.as_sse2() {
                 batch.fast = self.fast_hits(simd, &batch.rays);
-                self.others.compare(simd, &batch, &mut tally);
+                self.sse2.compare(simd, &batch, &mut tally);
             }
             if let Some(simd) = level.as_sse4_2() {
                 batch.fast = self.fast_hits(simd, &batch.rays);
-                self.others.compare(simd, &batch, &mut tally);
+                self.sse4_2.compare(simd, &batch, &mut tally);
             }
             if let Some(simd) = level.as_avx2() {
                 batch.fast = self.fast_hits(simd, &batch.rays);
-                self.others.compare(simd, &batch, &mut tally);
+                self.avx2.compare(simd, &batch, &mut tally);
             }
         }
         fearless_simd::dispatch!(level, simd => {

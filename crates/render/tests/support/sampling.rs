@@ -19,7 +19,7 @@ const SECTORS: usize = 16;
 /// Midpoints of the quadrature along each side of a cell.
 const STEPS: usize = 12;
 /// The same, in cells where the density ends.
-const EDGE_STEPS: usize = 40;
+const EDGE_STEPS: usize = 32;
 const SAMPLES: usize = 60_000;
 const TAU: f64 = std::f64::consts::TAU;
 
@@ -262,12 +262,13 @@ impl<B: for<'b> Bsdf<Scalar<'b>> + for<'b> Bsdf<Precise<'b>>> Case<'_, B> {
         }
     }
 
-    fn exact(&self, buffers: &Buffers<'_>, wo: [f64; 3], wi: [f64; 3]) -> ([f64; 3], f64) {
-        let d = Precise::new(buffers);
-        let value = self
-            .bsdf
-            .eval(d, &self.side.surface(d), vector(wo), vector(wi));
-        (array(value.value), value.pdf)
+    /// Value and density of pairs of directions, in 64 bits.
+    fn exact<'b>(&self, d: Precise<'b>) -> impl Fn([f64; 3], [f64; 3]) -> ([f64; 3], f64) {
+        let surface = self.side.surface(d);
+        move |wo, wi| {
+            let value = self.bsdf.eval(d, &surface, vector(wo), vector(wi));
+            (array(value.value), value.pdf)
+        }
     }
 
     /// p-value of the sampled directions, `bias` being a perturbation of the density for the test of the test.
@@ -290,9 +291,10 @@ impl<B: for<'b> Bsdf<Scalar<'b>> + for<'b> Bsdf<Precise<'b>>> Case<'_, B> {
         let chart = |event| Chart::new(exact, event, self.scale);
         let above = chart(Event::Reflection);
         let below = self.through.map(chart);
-        let mut masses = above.masses(|wi| self.exact(&buffers, exact, wi).1);
+        let evaluated = self.exact(Precise::new(&buffers));
+        let mut masses = above.masses(|wi| evaluated(exact, wi).1);
         if let Some(below) = &below {
-            masses.extend(below.masses(|wi| self.exact(&buffers, exact, wi).1));
+            masses.extend(below.masses(|wi| evaluated(exact, wi).1));
         }
         let failures = masses.len();
         let total: f64 = masses.iter().sum();
@@ -334,7 +336,7 @@ impl<B: for<'b> Bsdf<Scalar<'b>> + for<'b> Bsdf<Precise<'b>>> Case<'_, B> {
             counts[cell.unwrap_or(failures)] += 1.0;
             let length2 = dot(wi, wi);
             assert!((length2 - 1.0).abs() < 2e-6, "{}", place());
-            let (value, pdf) = self.exact(&buffers, wo, wi);
+            let (value, pdf) = evaluated(wo, wi);
             pdfs.add((sample.evaluated / sample.pdf - 1.0).abs(), place);
             if wi[2].abs() > 1e-3 {
                 for (weight, value) in sample.weight.into_iter().zip(value) {
