@@ -7,7 +7,7 @@ use render::light::Area;
 use render::renderer::MaterialVisitor;
 use render::sampler::Sobol;
 use render::surface::Attributes;
-use render::texture::{Param, Product, UnderCoat};
+use render::texture::{Bilinear, Image, LinearRgba8, Param, Product, Repeat, UnderCoat, UvMap};
 use render::tracer::{PathTracer, PowerHeuristic, Settings};
 use residual_device_cpu::generated::render;
 
@@ -28,16 +28,37 @@ impl<'a> Scene<'a> {
 impl Scene<'_> {
     /// The fingerprint of the structure: the plan whose data are rendered must have the same.
     #[allow(dead_code, reason = "read by programs that embed the renderer")]
-    pub const STRUCTURE: u64 = 0xe09438d8b0a81fb3;
+    pub const STRUCTURE: u64 = 0xc5406ee4f701a028;
 
     /// Layers beside radiance: none.
     pub const LAYERS: Layers = Layers::from_bits(0b0);
 }
 
+const TEXTURE_0: Image<Repeat, Repeat, Bilinear, LinearRgba8> = Image {
+    slot: 6,
+    uv: UvMap {
+        set: 0,
+        transform: None,
+    },
+    channel: 0,
+    wrap: (Repeat, Repeat),
+    filter: Bilinear,
+    format: LinearRgba8,
+};
+
 impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
     type Camera = Perspective;
     type Tracer = PathTracer<D, Sobol, PowerHeuristic>;
-    type Lights = (Area<UnderCoat<Param, Product<Param, Param>, Param>>, ());
+    type Lights = (
+        Area<
+            UnderCoat<
+                Param,
+                Product<Param, Product<Param, Image<Repeat, Repeat, Bilinear, LinearRgba8>>>,
+                Product<Param, Image<Repeat, Repeat, Bilinear, LinearRgba8>>,
+            >,
+        >,
+        (),
+    );
 
     #[inline(always)]
     fn camera(&self) -> &Self::Camera {
@@ -57,11 +78,14 @@ impl<D: Domain> render::renderer::Renderer<D> for Scene<'_> {
         &(
             Area {
                 emission: UnderCoat {
-                    color: Param(11),
-                    normal: Product(Param(15), Param(5)),
-                    grazing: Param(5),
+                    color: Param(15),
+                    normal: Product(Param(19), Product(Param(5), TEXTURE_0)),
+                    grazing: Product(Param(5), TEXTURE_0),
                 },
-                attributes: Attributes::NONE,
+                attributes: Attributes {
+                    uv0: true,
+                    ..Attributes::NONE
+                },
             },
             (),
         )
@@ -117,8 +141,10 @@ mod program0 {
     }
 }
 
-/// "lamp"
+/// "lamp", image "image 0"
 mod program1 {
+    use super::TEXTURE_0;
+
     use super::render::bsdf::{Bsdf, Coated, Glossy, Isotropic, Schlick};
     use super::render::domain::Domain;
     use super::render::material::{Material, Shading};
@@ -133,7 +159,10 @@ mod program1 {
     impl<D: Domain> Material<D> for Program {
         #[inline(always)]
         fn attributes(&self) -> Attributes {
-            Attributes::NONE
+            Attributes {
+                uv0: true,
+                ..Attributes::NONE
+            }
         }
 
         #[inline(always)]
@@ -150,14 +179,15 @@ mod program1 {
             let albedo = Bound(Param(0).color(d, surface));
             let metal_grazing_reflectance = Bound(Const(1.0_f32).scalar(d, surface));
             let roughness = Bound(Param(4).scalar(d, surface));
-            let clearcoat_reflectance = Bound(Product(Param(6), Gray(Param(5))).color(d, surface));
-            let clearcoat = Bound(Param(5).scalar(d, surface));
-            let clearcoat_roughness = Bound(Param(10).scalar(d, surface));
+            let clearcoat_reflectance =
+                Bound(Product(Param(10), Gray(Product(Param(5), TEXTURE_0))).color(d, surface));
+            let clearcoat = Bound(Product(Param(5), TEXTURE_0).scalar(d, surface));
+            let clearcoat_roughness = Bound(Param(14).scalar(d, surface));
             let emission = Bound(
                 UnderCoat {
-                    color: Param(11),
-                    normal: Product(Param(15), Param(5)),
-                    grazing: Param(5),
+                    color: Param(15),
+                    normal: Product(Param(19), Product(Param(5), TEXTURE_0)),
+                    grazing: Product(Param(5), TEXTURE_0),
                 }
                 .color(d, surface),
             );

@@ -960,16 +960,27 @@ fn lights() -> Vec<Tiny> {
         ),
         Tiny::new(
             "coated_emission",
+            // The coat has a texture, what is emitted under it has none.
             &[
-                Effect::EmittingSurfaces,
-                Effect::CoatedEmission,
-                Effect::MetallicReflection,
-                Effect::ClearCoat,
-            ],
+                &SRGB[..3],
+                &[
+                    Effect::LinearTexels,
+                    Effect::EmittingSurfaces,
+                    Effect::CoatedEmission,
+                    Effect::MetallicReflection,
+                    Effect::ClearCoat,
+                ],
+            ]
+            .concat(),
             &point,
             lit(|b| {
+                let image = b.bytes(5, 3);
+                let strength = b.texture(image, REPEAT, Filter::Linear);
                 let coated = MetallicRoughness {
-                    clearcoat: scalar(0.8),
+                    clearcoat: ScalarInput {
+                        factor: 0.8,
+                        texture: Some((strength, 0)),
+                    },
                     clearcoat_roughness: scalar(0.1),
                     ..metallic_roughness([0.7, 0.1, 0.1], 1.0, 0.5)
                 };

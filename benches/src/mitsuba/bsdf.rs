@@ -68,6 +68,9 @@ impl Inputs<'_> {
         let input = &self.0.inputs[index];
         match &input.source {
             SourceNode::Color(ColorNode::Const(value)) => Ok(*value),
+            SourceNode::Color(ColorNode::UnderCoat { .. }) => {
+                Err("emission under a clear coat".to_owned())
+            }
             _ => Err(format!("a texture or vertex colours for {:?}", input.name)),
         }
     }

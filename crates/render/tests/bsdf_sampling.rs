@@ -160,6 +160,44 @@ fn combinations() {
     family.assert_plausible();
 }
 
+/// Glass that is mixed proposes directions and is evaluated, where glass alone knows its weights.
+#[test]
+fn mixed_glass() {
+    let data = glass_scene(1.5);
+    let mut family = Family::default();
+    for roughness in [0.2, 0.6] {
+        let body = Mix {
+            a: Diffuse { albedo: BASE },
+            b: frosted(BASE.0, 1.5, roughness),
+            weight: Const(0.7),
+        };
+        for (side, eta) in [(Side::Front, 1.5), (Side::Back, 1.0 / 1.5)] {
+            Case {
+                side,
+                through: Some(Event::Refraction(eta)),
+                ..Case::new(
+                    format!("body {roughness}, {side:?}"),
+                    body,
+                    alpha(roughness),
+                    &data,
+                )
+            }
+            .check(&mut family, 1e-3, 5e-2);
+        }
+        let sheet = Mix {
+            a: Diffuse { albedo: BASE },
+            b: frosted_sheet(BASE.0, 1.5, roughness),
+            weight: Const(0.7),
+        };
+        Case {
+            through: Some(Event::Passage),
+            ..Case::new(format!("sheet {roughness}"), sheet, alpha(roughness), &data)
+        }
+        .check(&mut family, 1e-3, 5e-2);
+    }
+    family.assert_plausible();
+}
+
 #[test]
 fn perturbed_densities_are_rejected() {
     let data = scene(&[FLOOR]);

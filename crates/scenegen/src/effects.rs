@@ -115,12 +115,15 @@ impl Effects {
         }
         if let Some(emission) = program.emission {
             self.add(Effect::EmittingSurfaces, place);
-            let source = &program.inputs[emission.radiance.0].source;
-            if has_image(source) {
+            let is_textured = match &program.inputs[emission.radiance.0].source {
+                SourceNode::Color(ColorNode::UnderCoat { color, .. }) => {
+                    self.add(Effect::CoatedEmission, place);
+                    has_image(&**color)
+                }
+                source => has_image(source),
+            };
+            if is_textured {
                 self.add(Effect::TexturedEmission, place);
-            }
-            if matches!(source, SourceNode::Color(ColorNode::UnderCoat { .. })) {
-                self.add(Effect::CoatedEmission, place);
             }
         }
         if let Some(test) = &program.alpha_test {
@@ -331,7 +334,7 @@ fn camera_effect(camera: &CameraNode) -> Effect {
     }
 }
 
-fn has_image(source: &SourceNode) -> bool {
+fn has_image(source: &impl Source) -> bool {
     let leaves = source.leaves();
     leaves.iter().any(|leaf| matches!(leaf, Leaf::Image(_)))
 }

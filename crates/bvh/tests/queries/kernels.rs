@@ -79,7 +79,7 @@ combinations!(best:
 );
 // For the lesser ones: the kernel that calls the others, in all precisions between them.
 combinations!(sse2:
-    n4p4(4, 4): Exact [Hybrid::<4>];
+    n4p4(4, 4): Fast [Hybrid::<4>];
     n8p8(8, 8): Watertight [Hybrid::<8>];
 );
 combinations!(sse4_2:
@@ -87,7 +87,7 @@ combinations!(sse4_2:
     n8p8(8, 8): Watertight [Hybrid::<8>];
 );
 combinations!(avx2:
-    n4p4(4, 4): Fast [Hybrid::<4>];
+    n4p4(4, 4): Exact [Hybrid::<4>];
     n8p8(8, 8): Watertight [Hybrid::<8>];
 );
 

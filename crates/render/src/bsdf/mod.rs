@@ -4,8 +4,8 @@
 //! it comes from, both pointing away from the surface. The frame lies on the side of `wo`: `wo.z` > 0. Whether
 //! that is the front of the surface is said by [`Surface::front`].
 //!
-//! To add a BSDF: write one file with a struct generic over its sources, implement [`Bsdf`], and give it a row in the
-//! node table (`program/nodes.rs`).
+//! To add a BSDF: write one file with a struct generic over its sources, implement [`Bsdf`] (what it is worth, how it proposes
+//! directions, its albedo, its kind), and give it a row in the node table (`program/nodes.rs`).
 
 mod albedo_table;
 mod azimuth;
@@ -59,7 +59,7 @@ use crate::surface::Surface;
 pub struct BsdfValue<D: Domain> {
     /// f·|cos θᵢ|; 0 for delta lobes.
     pub value: Color<D::F>,
-    /// Density, per steradian, with which `sample` proposes the direction; 0 for delta lobes.
+    /// Density, per steradian, with which [`propose`](Bsdf::propose) gives the direction; 0 for delta lobes.
     pub pdf: D::F,
 }
 
@@ -83,7 +83,7 @@ pub struct BsdfSample<D: Domain> {
     pub wi: Vec3<D::F>,
     /// f·|cos θᵢ| ÷ density; 0 where sampling failed.
     pub weight: Color<D::F>,
-    /// Density per steradian; 0 where the direction came from a delta lobe.
+    /// Density per steradian; 0 where the direction came from a delta lobe, and where sampling failed.
     pub pdf: D::F,
     /// The direction came from a delta lobe.
     pub delta: D::M,
@@ -116,7 +116,7 @@ pub trait Bsdf<D: Domain> {
     /// Proposes a direction, from two numbers for the direction and one for the choice of a lobe.
     fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D>;
     /// The proposed direction with what it is worth: the quotient of what [`eval`](Bsdf::eval) says of it, unless the BSDF knows it
-    /// in closed form.
+    /// in closed form; it then has the same direction, and no weight where that is not possible.
     #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
         let BsdfProposal {
@@ -135,13 +135,13 @@ pub trait Bsdf<D: Domain> {
             };
         }
         let BsdfValue { value, pdf } = self.eval(d, surface, wo, wi);
-        let possible = d.lt(zero, pdf) & possible;
+        let possible = d.lt(zero, pdf) & possible & !delta;
         let inverse = one / d.select(possible, pdf, one);
         let quotient = value.scale(inverse).only(d, possible);
         BsdfSample {
             wi,
             weight: Vec3::choose(d, delta, weight, quotient),
-            pdf: d.select(delta, zero, pdf),
+            pdf: d.select(possible, pdf, zero),
             delta,
         }
     }

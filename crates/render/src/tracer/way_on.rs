@@ -10,9 +10,12 @@ use crate::sampler::Sampler;
 /// What a path is to be worth on its way, of the 1 that it begins with. Less takes time for what hardly shows; with more, paths end that
 /// light the darker parts of an image (measured from 1/4 to 1).
 const LEAST_WORTH: f64 = 1.0 / 3.0;
-/// From this vertex on, a path may also end that is worth all of that: between surfaces that lose nothing it would go on for ever.
-/// To end it sooner costs more noise than it saves time (measured with 4, 6, 8 and 16).
-const ALWAYS_MORTAL_FROM: u32 = 8;
+/// The greatest probability of going on from the vertex [`MORTAL_FROM`] on: between surfaces that lose nothing a path would go on for
+/// ever.
+const MOST_LIKELY: f64 = 0.95;
+/// Before this vertex, a path that is worth [`LEAST_WORTH`] goes on for certain: to end it would be noise, and save little time (measured
+/// with 4, 6, 8 and 16).
+const MORTAL_FROM: u32 = 8;
 
 /// A sampled direction, and the number that roulette is played with.
 pub(super) struct WayOn<D: Domain> {
@@ -69,8 +72,8 @@ impl<D: Domain> WayOn<D> {
         let most = match vertex.is_in_medium {
             true => one,
             false => {
-                let is_young = d.lt_u(path.state.depth(d), d.uint(ALWAYS_MORTAL_FROM));
-                d.select(is_young, one, d.lit(0.95))
+                let is_young = d.lt_u(path.state.depth(d), d.uint(MORTAL_FROM));
+                d.select(is_young, one, d.lit(MOST_LIKELY))
             }
         };
         let survival = d.select(early, one, d.min(worth * d.lit(1.0 / LEAST_WORTH), most));

@@ -1,8 +1,8 @@
 //! EXT_lights_area: rectangles and discs that shine.
 
-use crate::common::gltf_text::{Gltf, warns};
+use crate::common::gltf_text::{F32, Gltf, U8, f32_bytes, warns};
 use glam::{Vec3, Vec3A};
-use residual_scenegen::desc::{MeshDesc, SceneDesc};
+use residual_scenegen::desc::{Dismissed, MeshDesc, SceneDesc};
 use residual_scenegen::import::ImportOptions;
 use serde_json::{Value, json};
 
@@ -116,32 +116,50 @@ fn their_scale_is_uniform_and_positive() {
         let found = vector_area(&scene, instance);
         assert!((found - expected).length() < 1e-5, "{found}");
     }
+    // A scale of 0 leaves the other axes, of which the third follows.
+    let scaled = |scale: [f32; 3]| {
+        let mut node = node(0);
+        node["scale"] = json!(scale);
+        node
+    };
+    let nodes = json!([
+        scaled([0., 1., 2.]),
+        scaled([2., 0., 1.]),
+        scaled([1., 2., 0.])
+    ]);
+    let flat = file(&json!([{ "type": "rect" }]), &nodes).import().unwrap();
+    for instance in 0..3 {
+        let found = vector_area(&flat, instance);
+        assert!((found - Vec3A::NEG_Z * 4.0).length() < 1e-5, "{found}");
+    }
     let centre = scene.instances[0].transform.translation;
     assert_eq!(Vec3::from(centre), Vec3::new(5.0, 6.0, 7.0));
 }
 
 #[test]
 fn lights_that_cannot_shine_are_left_out_with_a_warning() {
-    for (light, place, problem) in [
+    for (light, problem) in [
+        (json!(5), "no object"),
+        (json!({ "type": "sphere" }), "neither rect nor disk"),
+        (json!({ "type": "disk", "size": 0 }), "no area"),
+        (json!({ "type": "disk", "size": 1e-60 }), "no area"),
+        (json!({ "rect": { "aspect": 0 } }), "no area"),
         (
-            json!({ "type": "sphere" }),
-            "lights/0",
-            "neither rect nor disk",
+            json!({ "size": 1e30, "rect": { "aspect": 1e30 } }),
+            "infinite",
         ),
-        (json!({}), "lights/0", "neither rect nor disk"),
-        (json!({ "type": "disk", "size": 0 }), "lights/0", "no area"),
+        (json!({ "intensity": 0 }), "lights nothing"),
         (
-            json!({ "type": "rect", "rect": { "aspect": 0 } }),
-            "lights/0",
-            "no area",
+            json!({ "intensity": 3e38, "color": [100, 1, 1] }),
+            "lights nothing",
         ),
     ] {
         let mut gltf = file(&json!([light]), &json!([node(0), { "mesh": 0 }]));
-        gltf.indices(crate::common::gltf_text::U8, &[0, 1, 2], 3);
+        gltf.indices(U8, &[0, 1, 2], 3);
         let scene = gltf.import().unwrap();
         assert_eq!(scene.instances.len(), 1);
         assert!(
-            warns(&scene, place, problem),
+            warns(&scene, "lights/0", problem),
             "{light}: {:?}",
             scene.warnings
         );
@@ -149,7 +167,7 @@ fn lights_that_cannot_shine_are_left_out_with_a_warning() {
     let strange = json!({ "extensions": { "EXT_lights_area": { "light": -1 } } });
     let nodes = json!([node(1), strange, { "mesh": 0 }]);
     let mut gltf = file(&json!([{ "type": "rect" }]), &nodes);
-    gltf.indices(crate::common::gltf_text::U8, &[0, 1, 2], 3);
+    gltf.indices(U8, &[0, 1, 2], 3);
     let scene = gltf.import().unwrap();
     assert_eq!(scene.instances.len(), 1);
     assert!(
@@ -170,10 +188,26 @@ fn impossible_numbers_have_their_defaults() {
     }
     assert!((vector_area(&scene, 0).length() - 1.0).abs() < 1e-6);
     assert_eq!(scene.materials[0].emission.factor, [1000.0; 3]);
-    let bright = json!({ "type": "rect", "intensity": 3e38, "color": [100, 1, 1] });
-    let scene = file(&json!([bright]), &json!([node(0)])).import().unwrap();
-    assert!(warns(&scene, "lights/0", "dark"));
-    assert_eq!(scene.materials[0].emission.factor, [0.0; 3]);
+}
+
+/// A node has one light, however many copies of its mesh there are; hidden nodes have none.
+#[test]
+fn lights_are_not_copied_and_are_hidden_with_their_nodes() {
+    let mut gltf = file(&json!([{ "type": "disk" }]), &json!([]));
+    let places = gltf.accessor("VEC3", F32, &f32_bytes(&[0.0; 9]), 3);
+    let copies = json!({ "attributes": { "TRANSLATION": places } });
+    gltf.indices(U8, &[0, 1, 2], 3);
+    gltf.json["nodes"] = json!([
+        { "mesh": 0, "extensions": { "EXT_lights_area": { "light": 0 }, "EXT_mesh_gpu_instancing": copies } },
+        { "name": "out", "extensions": { "EXT_lights_area": { "light": 0 }, "KHR_node_visibility": { "visible": false } } },
+    ]);
+    gltf.json["scenes"][0]["nodes"] = json!([0, 1]);
+    let scene = gltf.import().unwrap();
+    assert_eq!(scene.instances.len(), 4);
+    let is_hidden = |dismissed: &Dismissed| {
+        dismissed.place.contains("out") && dismissed.reason.contains("hides")
+    };
+    assert!(scene.dismissed.iter().any(is_hidden));
 }
 
 /// One whose node has no extent at a moment is there all the same, without size.

@@ -277,6 +277,14 @@ pub(crate) fn lights() -> Vec<LightNode> {
         },
         area(ColorNode::Image(images()[0]), uv0),
         area(
+            ColorNode::UnderCoat {
+                color: Box::new(ColorNode::Param(0)),
+                normal: Box::new(ScalarNode::Const(0.04)),
+                grazing: Box::new(ScalarNode::Param(3)),
+            },
+            Attributes::default(),
+        ),
+        area(
             ColorNode::Gray(Box::new(ScalarNode::AtLeast(
                 Box::new(ScalarNode::Image(images()[0])),
                 Box::new(ScalarNode::Param(3)),

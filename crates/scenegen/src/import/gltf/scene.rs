@@ -87,11 +87,11 @@ fn read(
 /// Whether a node has a mesh or a light.
 fn shows_something(node: &Node) -> bool {
     let extensions = node.extensions.as_ref();
-    let has_point = extensions.is_some_and(|used| used.khr_lights_punctual.is_some());
-    node.mesh.is_some() || has_point || area_lights::is_at(node)
+    let has_punctual = extensions.is_some_and(|used| used.khr_lights_punctual.is_some());
+    node.mesh.is_some() || has_punctual || area_lights::is_at(node)
 }
 
-/// What nodes with meshes fill.
+/// What nodes fill that have meshes or area lights.
 struct Reader<'a> {
     document: &'a Document,
     accessors: Accessors<'a>,
@@ -123,15 +123,15 @@ impl Reader<'_> {
                 let deformation = self.deformation(mesh, placed, pose, &worlds, warnings)?;
                 self.place(mesh, index, placed, &deformation, &mut placements, warnings)?;
             }
-            let (meshes, materials) = (&mut self.meshes.list, &mut self.materials);
-            let light = self
-                .area_lights
-                .mesh_of(placed, meshes, materials, warnings);
-            placements.extend(light.map(|mesh| Placement {
-                mesh,
-                node: index,
-                world: area_lights::world(&placed.world),
-            }));
+            let light = self.area_lights.place(
+                index,
+                placed,
+                &mut self.meshes.list,
+                &mut self.materials,
+                &mut self.accessors.budget,
+                warnings,
+            )?;
+            placements.extend(light);
         }
         Ok(placements)
     }
