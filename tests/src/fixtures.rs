@@ -48,15 +48,7 @@ pub fn matte(albedo: [f32; 3]) -> SurfaceDesc {
 
 /// A material that neither emits nor has alpha or a normal map; seen from both sides.
 pub fn material(name: &str, surface: SurfaceDesc) -> MaterialDesc {
-    MaterialDesc {
-        name: name.to_owned(),
-        surface,
-        emission: color([0.0; 3]),
-        alpha_mode: AlphaMode::Opaque,
-        alpha: scalar(1.0),
-        normal_map: None,
-        double_sided: true,
-    }
+    MaterialDesc::new(name, surface)
 }
 
 /// A parallelogram with texture coordinates, seen from the side from which `u` turns left to `v`.

@@ -882,10 +882,10 @@ fn alphas() -> Vec<Tiny> {
 
 fn lights() -> Vec<Tiny> {
     let point = [Effect::PointLights];
-    let glowing = |emission| {
+    let lamp = |emission, surface| {
         let lamp = MaterialDesc {
             emission,
-            ..material("lamp", matte([0.0; 3]))
+            ..material("lamp", surface)
         };
         move |b: &mut Builder| {
             b.add(
@@ -894,6 +894,7 @@ fn lights() -> Vec<Tiny> {
             );
         }
     };
+    let glowing = |emission| lamp(emission, matte([0.0; 3]));
     let mut by_solid_angle = Tiny::new(
         "light_by_solid_angle",
         &[Effect::EmittingSurfaces, Effect::SolidAngleSampling],
@@ -984,12 +985,8 @@ fn lights() -> Vec<Tiny> {
                     clearcoat_roughness: scalar(0.1),
                     ..metallic_roughness([0.7, 0.1, 0.1], 1.0, 0.5)
                 };
-                let lamp = MaterialDesc {
-                    emission: color([6.0, 5.0, 4.0]),
-                    ..material("lamp", SurfaceDesc::MetallicRoughness(coated))
-                };
-                let place = sheet([-0.4, 0.7, 0.9], [0.8, 0.0, 0.0], [0.0, 0.0, 0.6]);
-                b.add(lamp, [place]);
+                let coated = SurfaceDesc::MetallicRoughness(coated);
+                lamp(color([6.0, 5.0, 4.0]), coated)(b);
             }),
         ),
         Tiny::new(

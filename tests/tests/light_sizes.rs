@@ -15,20 +15,25 @@ const HALF_WIDTH: f64 = 0.8;
 /// The blade's height above the floor.
 const HEIGHT: f64 = 4.0;
 
-/// A floor that reflects all, and a blade above its left half, under a light; the camera looks down from between the two.
-fn blade(kind: PunctualKind, size: f32) -> SceneDesc {
-    let mut b = Builder::new("blade");
+/// Adds a floor that reflects all, and a camera that looks down on it.
+fn over_a_floor(mut b: Builder) -> SceneDesc {
     let floor = sheet([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
     b.add(material("floor", matte([1.0; 3])), [floor]);
+    let ymag = (HALF_WIDTH * f64::from(SIZE[1]) / f64::from(SIZE[0])) as f32;
+    let lens = Projection::Orthographic { ymag };
+    b.camera("camera", [0.0, 0.0, 3.0], [0.0, 0.0, 0.0], lens);
+    b.finish()
+}
+
+/// A floor, and a blade above its left half, under a light; the camera is between the two.
+fn blade(kind: PunctualKind, size: f32) -> SceneDesc {
+    let mut b = Builder::new("blade");
     let edge = [-40.0, -40.0, HEIGHT as f32];
     let blade = sheet(edge, [40.0, 0.0, 0.0], [0.0, 80.0, 0.0]);
     b.add(material("blade", matte([0.0; 3])), [blade]);
     b.light(kind, [std::f32::consts::PI; 3]);
     b.size_of_light(size);
-    let ymag = (HALF_WIDTH * f64::from(SIZE[1]) / f64::from(SIZE[0])) as f32;
-    let lens = Projection::Orthographic { ymag };
-    b.camera("camera", [0.0, 0.0, 3.0], [0.0, 0.0, 0.0], lens);
-    b.finish()
+    over_a_floor(b)
 }
 
 /// Mean radiance of each column of the image.
@@ -148,7 +153,7 @@ fn a_light_without_a_size_is_a_point() {
     assert_eq!(scene.lights[0].size, 0.1);
 }
 
-/// The light of a file, 1 above a floor that reflects all, on which the camera looks down from above the light.
+/// The light of a file, 1 above a floor; the camera is above the light.
 fn below(light: &Value) -> SceneDesc {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("light.gltf");
@@ -159,13 +164,7 @@ fn below(light: &Value) -> SceneDesc {
         "nodes": [{ "translation": [0, 0, 1], "extensions": { "EXT_lights_area": { "light": 0 } } }],
     });
     std::fs::write(&file, gltf.to_string()).unwrap();
-    let mut b = Builder::of(read_scene(&file, None).unwrap());
-    let floor = sheet([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
-    b.add(material("floor", matte([1.0; 3])), [floor]);
-    let ymag = (HALF_WIDTH * f64::from(SIZE[1]) / f64::from(SIZE[0])) as f32;
-    let lens = Projection::Orthographic { ymag };
-    b.camera("camera", [0.0, 0.0, 3.0], [0.0, 0.0, 0.0], lens);
-    b.finish()
+    over_a_floor(Builder::of(read_scene(&file, None).unwrap()))
 }
 
 /// Irradiance over π below a disc of radiance 1, at this distance from its axis (Naraghi and Chung 1982, "Radiation

@@ -85,13 +85,25 @@ fn scenes() -> Vec<(&'static str, SceneDesc)> {
     ]
 }
 
-/// Lamps of which parts are cut out or let light through, in front of one another, and panes below them.
-fn lamps_with_alpha() -> SceneDesc {
-    let mut b = Builder::new("lamps with alpha");
+fn on_a_floor(name: &str) -> Builder {
+    let mut b = Builder::new(name);
     b.add(
         material("floor", matte([0.8, 0.7, 0.6])),
         [sheet([-2.0, 0.0, 2.0], [4.0, 0.0, 0.0], [0.0, 0.0, -4.0])],
     );
+    b
+}
+
+/// From a camera that shows the floor and what is on it.
+fn seen(mut b: Builder) -> SceneDesc {
+    let lens = Projection::Perspective { yfov: 0.9 };
+    b.camera("camera", [0.5, 2.5, 4.5], [0.0, 0.7, 0.0], lens);
+    b.finish()
+}
+
+/// Lamps of which parts are cut out or let light through, in front of one another, and panes below them.
+fn lamps_with_alpha() -> SceneDesc {
+    let mut b = on_a_floor("lamps with alpha");
     let image = b.bytes(7, 5);
     let alpha = ScalarInput {
         factor: 1.0,
@@ -136,18 +148,12 @@ fn lamps_with_alpha() -> SceneDesc {
             )],
         );
     }
-    let lens = Projection::Perspective { yfov: 0.9 };
-    b.camera("camera", [0.5, 2.5, 4.5], [0.0, 0.7, 0.0], lens);
-    b.finish()
+    seen(b)
 }
 
 /// A lamp whose coat lets through the less, the more it is seen from the side.
 fn coated_lamp() -> SceneDesc {
-    let mut b = Builder::new("coated lamp");
-    b.add(
-        material("floor", matte([0.8, 0.7, 0.6])),
-        [sheet([-2.0, 0.0, 2.0], [4.0, 0.0, 0.0], [0.0, 0.0, -4.0])],
-    );
+    let mut b = on_a_floor("coated lamp");
     let coated = MetallicRoughness {
         clearcoat: scalar(0.9),
         clearcoat_roughness: scalar(0.3),
@@ -161,9 +167,7 @@ fn coated_lamp() -> SceneDesc {
         lamp,
         [sheet([-1.0, 0.1, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0])],
     );
-    let lens = Projection::Perspective { yfov: 0.9 };
-    b.camera("camera", [0.5, 2.5, 4.5], [0.0, 0.7, 0.0], lens);
-    b.finish()
+    seen(b)
 }
 
 #[test]

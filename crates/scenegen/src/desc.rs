@@ -197,6 +197,21 @@ pub struct MaterialDesc {
     pub double_sided: bool,
 }
 
+impl MaterialDesc {
+    /// Of a surface that emits nothing, is opaque, has no normal map, and is seen from both sides.
+    pub fn new(name: impl Into<String>, surface: SurfaceDesc) -> Self {
+        Self {
+            name: name.into(),
+            surface,
+            emission: ColorInput::constant([0.0; 3]),
+            alpha_mode: AlphaMode::Opaque,
+            alpha: ScalarInput::constant(1.0),
+            normal_map: None,
+            double_sided: true,
+        }
+    }
+}
+
 /// How a surface scatters light.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(

@@ -2,10 +2,7 @@
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use crate::desc::{
-    AlphaMode, ColorInput, InstanceDesc, MaterialDesc, MeshDesc, ScalarInput, SceneDesc,
-    SurfaceDesc,
-};
+use crate::desc::{ColorInput, InstanceDesc, MaterialDesc, MeshDesc, SceneDesc, SurfaceDesc};
 
 /// Half the ground's side, in terms of half the scene's larger extent along x and z.
 const REACH: f32 = 1.5;
@@ -27,26 +24,13 @@ impl SceneDesc {
             let y = low.y - GAP * reach;
             Vec3::new(centre.x + x * reach, y, centre.z + z * reach)
         };
-        let plain = |value: f32| ColorInput {
-            factor: [value; 3],
-            texture: None,
+        let plain = |value: f32| ColorInput::constant([value; 3]);
+        let squares = SurfaceDesc::Checkerboard {
+            even: plain(0.5),
+            odd: plain(0.25),
+            squares: [SQUARES; 2],
         };
-        self.materials.push(MaterialDesc {
-            name: "ground".to_owned(),
-            surface: SurfaceDesc::Checkerboard {
-                even: plain(0.5),
-                odd: plain(0.25),
-                squares: [SQUARES; 2],
-            },
-            emission: plain(0.0),
-            alpha_mode: AlphaMode::Opaque,
-            alpha: ScalarInput {
-                factor: 1.0,
-                texture: None,
-            },
-            normal_map: None,
-            double_sided: true,
-        });
+        self.materials.push(MaterialDesc::new("ground", squares));
         self.meshes.push(MeshDesc {
             name: "ground".to_owned(),
             material: self.materials.len() - 1,
@@ -101,23 +85,13 @@ mod tests {
             ..MeshDesc::default()
         };
         scene.meshes.push(mesh);
+        let glass = SurfaceDesc::Dielectric {
+            ior: 1.5,
+            transmittance: [1.0; 3],
+        };
         scene.materials.push(MaterialDesc {
-            name: String::new(),
-            surface: SurfaceDesc::Dielectric {
-                ior: 1.5,
-                transmittance: [1.0; 3],
-            },
-            emission: ColorInput {
-                factor: [0.0; 3],
-                texture: None,
-            },
-            alpha_mode: AlphaMode::Opaque,
-            alpha: ScalarInput {
-                factor: 1.0,
-                texture: None,
-            },
-            normal_map: None,
             double_sided: false,
+            ..MaterialDesc::new("", glass)
         });
         scene.instances.push(InstanceDesc {
             name: String::new(),

@@ -26,8 +26,7 @@ struct Scene {
     mesh: Mesh,
     center: f32,
     best: best::Trees,
-    sse2: sse2::Trees,
-    sse4_2: sse4_2::Trees,
+    sse: sse::Trees,
     avx2: avx2::Trees,
     alone: Vec<Bvh<4>>,
 }
@@ -78,11 +77,7 @@ combinations!(best:
     n16p4(16, 4): Watertight [OneByOne];
 );
 // For the lesser ones: the kernel that calls the others, in all precisions between them.
-combinations!(sse2:
-    n4p4(4, 4): Fast [Hybrid::<4>];
-    n8p8(8, 8): Watertight [Hybrid::<8>];
-);
-combinations!(sse4_2:
+combinations!(sse:
     n4p4(4, 4): Fast [Hybrid::<4>];
     n8p8(8, 8): Watertight [Hybrid::<8>];
 );
@@ -188,8 +183,7 @@ impl Scene {
         Scene {
             center,
             best: best::Trees::new(&mesh, quality),
-            sse2: sse2::Trees::new(&mesh, quality),
-            sse4_2: sse4_2::Trees::new(&mesh, quality),
+            sse: sse::Trees::new(&mesh, quality),
             avx2: avx2::Trees::new(&mesh, quality),
             alone: mesh
                 .triangles
@@ -287,11 +281,11 @@ impl Scene {
         {
             if let Some(simd) = level.as_sse2() {
                 batch.fast = self.fast_hits(simd, &batch.rays);
-                self.sse2.compare(simd, &batch, &mut tally);
+                self.sse.compare(simd, &batch, &mut tally);
             }
             if let Some(simd) = level.as_sse4_2() {
                 batch.fast = self.fast_hits(simd, &batch.rays);
-                self.sse4_2.compare(simd, &batch, &mut tally);
+                self.sse.compare(simd, &batch, &mut tally);
             }
             if let Some(simd) = level.as_avx2() {
                 batch.fast = self.fast_hits(simd, &batch.rays);

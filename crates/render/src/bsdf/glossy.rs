@@ -2,7 +2,7 @@
 
 use super::directional_albedo::DirectionalAlbedo;
 use super::fresnel::Fresnel;
-use super::ggx::{are_above, half_cosine, reflect};
+use super::ggx::{Ggx, are_above, half_cosine, reflect};
 use super::roughness::Roughness;
 use super::{Bsdf, BsdfKind, BsdfProposal, BsdfSample, BsdfValue};
 use crate::domain::Domain;
@@ -18,6 +18,25 @@ pub struct Glossy<F, R> {
     pub fresnel: F,
     /// How facets are turned.
     pub roughness: R,
+}
+
+impl<F, R> Glossy<F, R> {
+    /// The facets, the normal of one that was drawn, and where light comes from that it reflects.
+    #[inline(always)]
+    fn event<D: Domain>(
+        &self,
+        d: D,
+        surface: &Surface<D>,
+        wo: Vec3<D::F>,
+        u: [D::F; 3],
+    ) -> (Ggx<D::F>, [Vec3<D::F>; 2])
+    where
+        R: Roughness<D>,
+    {
+        let ggx = self.roughness.microfacets(d, surface);
+        let h = ggx.sample_reflecting_normal(d, wo, [u[0], u[1]]);
+        (ggx, [h, reflect(d, wo, h)])
+    }
 }
 
 impl<D: Domain, F: Fresnel<D>, R: Roughness<D>> Bsdf<D> for Glossy<F, R> {
@@ -38,17 +57,13 @@ impl<D: Domain, F: Fresnel<D>, R: Roughness<D>> Bsdf<D> for Glossy<F, R> {
 
     #[inline(always)]
     fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
-        let ggx = self.roughness.microfacets(d, surface);
-        let h = ggx.sample_reflecting_normal(d, wo, [u[0], u[1]]);
-        let wi = reflect(d, wo, h);
+        let (_, [_, wi]) = self.event(d, surface, wo, u);
         BsdfProposal::of_lobe(d, wi, are_above(d, wo, wi))
     }
 
     #[inline(always)]
     fn sample(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfSample<D> {
-        let ggx = self.roughness.microfacets(d, surface);
-        let h = ggx.sample_reflecting_normal(d, wo, [u[0], u[1]]);
-        let wi = reflect(d, wo, h);
+        let (ggx, [h, wi]) = self.event(d, surface, wo, u);
         let fresnel = self.fresnel.reflectance(d, surface, d.abs(wo.dot(d, h)));
         let curve = self.fresnel.curve(d, surface, wo.z);
         let all = DirectionalAlbedo::new(d, &ggx, wo.z).compensation(d, &curve);

@@ -100,6 +100,16 @@ struct Event<D: Domain> {
     transmitted: Vec3<D::F>,
 }
 
+impl<D: Domain> Event<D> {
+    /// Whether a number has the facet reflect, and where light then comes from.
+    #[inline(always)]
+    fn outcome(&self, d: D, u: D::F) -> (D::M, Vec3<D::F>) {
+        let is_mirrored = d.lt(u, self.reflectance);
+        let wi = Vec3::choose(d, is_mirrored, self.reflected, self.transmitted);
+        (is_mirrored, wi)
+    }
+}
+
 impl<D: Domain> Facets<D> {
     /// What facets transmit, over the density of their normals and all that depends on the tint; and the same over masking, as
     /// a density: the second number needs no masking of `wi`. `h` is the facet's normal.
@@ -209,13 +219,10 @@ where
     #[inline(always)]
     fn propose(&self, d: D, surface: &Surface<D>, wo: Vec3<D::F>, u: [D::F; 3]) -> BsdfProposal<D> {
         let event = self.facets(d, surface).event(d, wo, [u[0], u[1]]);
-        let is_mirrored = d.lt(u[2], event.reflectance);
+        let (is_mirrored, wi) = event.outcome(d, u[2]);
+        let above = are_above(d, wo, event.reflected);
         let below = d.lt(event.transmitted.z, d.lit(0.0));
-        BsdfProposal::of_lobe(
-            d,
-            Vec3::choose(d, is_mirrored, event.reflected, event.transmitted),
-            d.select_mask(is_mirrored, are_above(d, wo, event.reflected), below),
-        )
+        BsdfProposal::of_lobe(d, wi, d.select_mask(is_mirrored, above, below))
     }
 
     #[inline(always)]
@@ -223,7 +230,7 @@ where
         let facets = self.facets(d, surface);
         let all = self.all(d, surface, &facets.ggx, wo.z);
         let event = facets.event(d, wo, [u[0], u[1]]);
-        let is_mirrored = d.lt(u[2], event.reflectance);
+        let (is_mirrored, wi) = event.outcome(d, u[2]);
         let (_, pdf) = facets.ggx.reflection(d, wo, event.reflected, event.normal);
         let returned = facets.ggx.sample_weight(d, wo, event.reflected);
         let (_, through_pdf) = facets.transmission(d, wo, event.transmitted, event.normal);
@@ -233,7 +240,7 @@ where
         let passed = d.select(possible, passed, d.lit(0.0)) / (facets.eta * facets.eta);
         let tint = self.transmittance.color(d, surface).scale(passed);
         BsdfSample {
-            wi: Vec3::choose(d, is_mirrored, event.reflected, event.transmitted),
+            wi,
             weight: Vec3::choose(d, is_mirrored, Vec3::splat(returned), tint).scale(all),
             pdf: d.select(is_mirrored, pdf * event.reflectance, through_pdf),
             delta: d.truth(false),

@@ -3,7 +3,7 @@
 use super::fresnel::{Fresnel, SchlickCurve};
 use crate::domain::Domain;
 use crate::math::elementary::{exp2, sincos_turns};
-use crate::math::fresnel::schlick_weight;
+use crate::math::fresnel::{schlick, schlick_weight};
 use crate::math::spectrum::rgb_of_xyz;
 use crate::math::vec3::vec3;
 use crate::math::{Color, Vec3};
@@ -86,7 +86,7 @@ fn film<D: Domain>(d: D, thickness: D::F, ior: D::F, cos: D::F, base: Color<D::F
             let sin2 = (one - cos * cos) / (ior * ior);
             let cos_film = d.sqrt(d.max(one - sin2, zero));
             let first = at_normal(d, ior, one);
-            let first = d.fma(one - first, schlick_weight(d, cos), first);
+            let first = schlick(d, first, one, cos);
             let passes = one - first;
             // The base's index of refraction, from its reflectance.
             let base_ior = base.map(|f| {

@@ -1,4 +1,4 @@
-//! How much a smooth interface reflects: the Fresnel equations of dielectrics, and the weight of Schlick's approximation.
+//! How much a smooth interface reflects: the Fresnel equations of dielectrics, and Schlick's approximation.
 
 use crate::domain::Domain;
 
@@ -8,6 +8,12 @@ pub fn schlick_weight<D: Domain>(d: D, cos: D::F) -> D::F {
     let m = d.max(d.lit(1.0) - cos, d.lit(0.0));
     let m2 = m * m;
     m2 * m2 * m
+}
+
+/// Schlick's approximation of the reflectance at an angle of this cosine, from those at normal and at grazing incidence.
+#[inline(always)]
+pub fn schlick<D: Domain>(d: D, normal: D::F, grazing: D::F, cos: D::F) -> D::F {
+    d.fma(grazing - normal, schlick_weight(d, cos), normal)
 }
 
 /// Fresnel reflectance of unpolarised light and the quantity √(η² − 1 + cos²), η times the cosine of the

@@ -3,7 +3,7 @@
 use super::{ColorSource, ScalarSource};
 use crate::domain::Domain;
 use crate::math::Color;
-use crate::math::fresnel::schlick_weight;
+use crate::math::fresnel::schlick;
 use crate::surface::Surface;
 
 /// A colour, times 1 − the Fresnel reflectance of the coat over it towards where the light goes, by Schlick's approximation
@@ -29,8 +29,8 @@ where
     #[inline(always)]
     fn color(&self, d: D, surface: &Surface<D>) -> Color<D::F> {
         let normal = self.normal.scalar(d, surface);
-        let range = self.grazing.scalar(d, surface) - normal;
-        let reflected = d.fma(range, schlick_weight(d, surface.cos_geometric), normal);
+        let grazing = self.grazing.scalar(d, surface);
+        let reflected = schlick(d, normal, grazing, surface.cos_geometric);
         self.color.color(d, surface).scale(d.lit(1.0) - reflected)
     }
 }

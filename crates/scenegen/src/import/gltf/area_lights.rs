@@ -13,9 +13,7 @@ use super::lookup::{find, place};
 use super::materials::Materials;
 use super::nodes::PlacedNode;
 use super::placements::Placement;
-use crate::desc::{
-    AlphaMode, ColorInput, MaterialDesc, MeshDesc, PhongSurface, ScalarInput, SurfaceDesc,
-};
+use crate::desc::{ColorInput, MaterialDesc, MeshDesc, PhongSurface, ScalarInput, SurfaceDesc};
 use crate::import::budget::Budget;
 use crate::import::error::Fault;
 use crate::import::warnings::Warnings;
@@ -71,8 +69,6 @@ impl<'a> AreaLights<'a> {
         let Some(used) = of_node(placed.node) else {
             return Ok(None);
         };
-        let message = format!("{EXTENSION} is a draft, which may change");
-        warnings.push("extensionsUsed", message);
         let at = format!("{}/extensions/{EXTENSION}", placed.place);
         let light = used.get("light").and_then(Value::as_u64);
         let Some(light) = light.and_then(|light| u32::try_from(light).ok()) else {
@@ -87,6 +83,8 @@ impl<'a> AreaLights<'a> {
         };
         let known = &mut self.meshes[light.value()];
         let mesh = *known.get_or_insert_with(|| {
+            let message = format!("{EXTENSION} is a draft, which may change");
+            warnings.push("extensionsUsed", message);
             let name = value.get("name").and_then(Value::as_str);
             let at = place(&array, light.value(), name);
             let name = name.map_or_else(|| format!("area light {}", light.value()), str::to_owned);
@@ -264,17 +262,14 @@ fn number(
 
 /// Emits, and reflects nothing.
 fn emitter(name: String, radiance: [f32; 3]) -> MaterialDesc {
+    let black = SurfaceDesc::Phong(PhongSurface {
+        diffuse: ColorInput::constant([0.0; 3]),
+        specular: ColorInput::constant([0.0; 3]),
+        exponent: ScalarInput::constant(0.0),
+    });
     MaterialDesc {
-        name,
-        surface: SurfaceDesc::Phong(PhongSurface {
-            diffuse: ColorInput::constant([0.0; 3]),
-            specular: ColorInput::constant([0.0; 3]),
-            exponent: ScalarInput::constant(0.0),
-        }),
         emission: ColorInput::constant(radiance),
-        alpha_mode: AlphaMode::Opaque,
-        alpha: ScalarInput::constant(1.0),
-        normal_map: None,
         double_sided: false,
+        ..MaterialDesc::new(name, black)
     }
 }
