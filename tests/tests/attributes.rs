@@ -5,9 +5,7 @@ use residual_render::cryptomatte;
 use residual_render::domain::Buffer;
 use residual_render::layer::{Layer, Layers};
 use residual_render::record::IndexedRecord;
-use residual_render::surface::{
-    ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
-};
+use residual_render::surface::{ColorRecord, NormalRecord, TangentRecord, UvRecord};
 use residual_render::triangle::{ObjectRecord, TriangleRecord};
 use residual_scenegen::desc::{
     AlphaMode, Filter, InstanceDesc, MaterialDesc, MeshDesc, NormalMap, PhongSurface, ScalarInput,
@@ -184,7 +182,6 @@ fn buffers_end_with_the_last_vertex_that_is_read() {
     // By hand.
     assert_eq!([tangents, colors, coordinates], [650, 654, 979]);
     assert_eq!(length::<NormalRecord>(&plan), 1629);
-    assert_eq!(length::<VerticesRecord>(&plan), plan.data.triangle_count());
     assert_eq!(plan.data.triangle_count(), 5 * 576 + 3 * 2);
 }
 
@@ -216,7 +213,7 @@ fn triangles_find_their_own_vertices() {
                     position.extend(0.0),
                     "position",
                 );
-                let VerticesRecord { a, b, c } = plan.data.record(triangle);
+                let [a, b, c] = plan.data.record::<TriangleRecord>(triangle).vertices();
                 let vertex = [a, b, c][k] as usize;
                 if reads.normals {
                     let normal = linear * mesh.normals[corner];
@@ -321,7 +318,6 @@ fn without_readers_there_are_no_vertices() {
     let plan = planned(&scene);
     assert_eq!(plan.data.triangle_count(), 4);
     for buffer in [
-        Buffer::Indices,
         Buffer::Normals,
         Buffer::Tangents,
         Buffer::Uvs,

@@ -55,7 +55,10 @@ fn scene(
 ) -> (Structure, SceneData) {
     let mut data = SceneData::default();
     for &(triangle, program) in triangles {
-        data.push_triangle(TriangleRecord::new(triangle), program);
+        data.push(TriangleRecord {
+            program,
+            ..TriangleRecord::new(triangle)
+        });
     }
     data.push(camera);
     data.single_sided = vec![false; triangles.len()];

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use residual_render::domain::Buffer;
 use residual_render::program::{AlphaTestNode, Program};
-use residual_render::surface::{Attributes, NormalRecord, UvRecord, VerticesRecord};
+use residual_render::surface::{Attributes, NormalRecord, UvRecord};
 use residual_render::triangle::TriangleRecord;
 use residual_scenegen::plan::Plan;
 
@@ -42,7 +41,7 @@ pub(super) fn shapes(plan: &Plan) -> Vec<Shape<'_>> {
 
 /// The shape that will have this triangle.
 fn empty(plan: &Plan, material: usize, triangle: usize) -> Shape<'_> {
-    let program = plan.data.buffer(Buffer::TrianglePrograms)[triangle];
+    let program = plan.data.record::<TriangleRecord>(triangle).program;
     let program = &plan.structure.programs[program as usize];
     Shape {
         material,
@@ -93,7 +92,7 @@ fn corners(plan: &Plan, program: &Program, triangle: usize) -> [Corner; 3] {
         });
     }
     let front = front(positions.map(Vec3::from));
-    let VerticesRecord { a, b, c } = plan.data.record(triangle);
+    let [a, b, c] = plan.data.record::<TriangleRecord>(triangle).vertices();
     let vertices = [a, b, c].map(|vertex| vertex as usize);
     [0, 1, 2].map(|k| Corner {
         position: positions[k],

@@ -12,7 +12,7 @@ use residual_render::camera::CameraRecord;
 use residual_render::domain::Buffer;
 use residual_render::light::{PunctualRecord, push_light, set_picks};
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{UvRecord, VerticesRecord};
+use residual_render::surface::UvRecord;
 use residual_render::texture::ImageParam;
 use residual_render::triangle::TriangleRecord;
 
@@ -69,13 +69,12 @@ pub(super) fn data(params_of_programs: &[Vec<u32>]) -> SceneData {
                 [(x, y), (x + 1, y), (x + 1, y + 1)],
                 [(x, y), (x + 1, y + 1), (x, y + 1)],
             ] {
-                let triangle = TriangleRecord {
+                data.push(TriangleRecord {
                     params: first,
+                    program: program as u32,
                     ..TriangleRecord::new(corners.map(|(x, y)| corner(x, y)))
-                };
-                data.push_triangle(triangle, program as u32);
-                let [a, b, c] = corners.map(|(x, y)| vertex(x, y));
-                data.push(VerticesRecord { a, b, c });
+                        .with_vertices(corners.map(|(x, y)| vertex(x, y)))
+                });
             }
         }
     }

@@ -47,7 +47,7 @@ where
         for (rest, valid) in lanes::<D>(range) {
             let [soon, later] = [1, 2].map(|groups| rest.start + groups * D::LANES);
             for triangle in self.hits.triangles::<D>(later) {
-                ahead::triangle(self.buffers, triangle, attributes);
+                ahead::triangle(self.buffers, triangle);
             }
             for triangle in self.hits.triangles::<D>(soon) {
                 ahead::vertices(self.buffers, triangle, attributes);

@@ -286,7 +286,7 @@ impl SortedHits {
         let hits = &self.hits[..len];
         for (path, (hit, program)) in hits.iter().zip(&mut self.programs).enumerate() {
             if let Some(later) = hits.get(path + ahead::PROGRAMS_AHEAD) {
-                ahead::program(buffers, later.prim);
+                ahead::triangle(buffers, later.prim);
             }
             *program = if hit.is_hit() {
                 program_in(buffers, hit.prim)

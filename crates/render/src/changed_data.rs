@@ -77,7 +77,7 @@ mod tests {
 
     fn data(corners: [[f32; 3]; 3]) -> SceneData {
         let mut data = SceneData::default();
-        data.push_triangle(TriangleRecord::new(corners), 7);
+        data.push(TriangleRecord::new(corners));
         data.buffer_mut(Buffer::Texels).push(9);
         data
     }
@@ -99,7 +99,6 @@ mod tests {
         assert_eq!(changed.positions(), Some(moved.to_vec()));
         let buffers = changed.buffers(&first);
         assert_eq!(buffers.get(Buffer::Texels), [9]);
-        assert_eq!(buffers.get(Buffer::TrianglePrograms), [7]);
         let expected = data(moved);
         assert_eq!(
             buffers.get(Buffer::Triangles),

@@ -58,12 +58,6 @@ impl SceneData {
         change(R::from_words(words)).write_to(words);
     }
 
-    /// Adds a triangle. Its attributes, if any, are the vertices that are added to [`Buffer::Indices`].
-    pub fn push_triangle(&mut self, triangle: TriangleRecord, program: u32) {
-        self.push(triangle);
-        self.buffer_mut(Buffer::TrianglePrograms).push(program);
-    }
-
     /// Makes a triangle a light.
     pub fn set_light(&mut self, triangle: usize, light: u32) {
         self.change(triangle, |record| TriangleRecord { light, ..record });
@@ -71,7 +65,7 @@ impl SceneData {
 
     /// How many triangles there are.
     pub fn triangle_count(&self) -> usize {
-        self.buffer(Buffer::TrianglePrograms).len()
+        self.buffer(Buffer::Triangles).len() / TriangleRecord::WORDS as usize
     }
 
     /// Positions of the corners, three a triangle.

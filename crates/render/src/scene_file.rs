@@ -4,7 +4,7 @@ use crate::domain::Buffer;
 use crate::scene_data::SceneData;
 
 /// Raised whenever the meaning of buffers changes.
-const MAGIC: [u8; 8] = *b"RSCENE04";
+const MAGIC: [u8; 8] = *b"RSCENE05";
 
 /// Bytes that are no scene data, or another version's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,9 +83,10 @@ mod tests {
         let corners = [[0.0; 3], [1.0; 3], [2.0, 3.0, 4.0]];
         let triangle = TriangleRecord {
             params: 6,
+            program: 5,
             ..TriangleRecord::new(corners)
         };
-        data.push_triangle(triangle, 5);
+        data.push(triangle);
         data.alpha_tested = vec![true];
         let bytes = data.to_bytes();
         let read = SceneData::from_bytes(&bytes).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::domain::{Buffer, Buffers, Domain, Scalar, Uint};
 use crate::math::Vec3;
-use crate::record::record;
+use crate::record::{Offsets, record};
 
 /// In [`TriangleRecord::light`]: the triangle is no light.
 pub const NO_LIGHT: u32 = u32::MAX;
@@ -28,13 +28,24 @@ record! {
             /// Index of the object that it belongs to.
             object: word,
         }
+        row {
+            /// Index of its program.
+            program: word,
+            /// First vertex, as an index into the buffers of attributes. Of no meaning where its program reads none.
+            vertex_a: word,
+            /// Second vertex.
+            vertex_b: word,
+            /// Third vertex.
+            vertex_c: word,
+        }
     }
 }
 
-const _: () = assert!(TriangleRecord::WORDS == 12);
+// As large as a cache line: what is read of a triangle that was hit waits for memory once.
+const _: () = assert!(TriangleRecord::WORDS == 16);
 
 impl TriangleRecord {
-    /// A triangle of object 0 with the parameters from word 0 on, and no light.
+    /// A triangle of object 0 and program 0 with the parameters from word 0 on, without vertices, and no light.
     pub fn new(corners: [[f32; 3]; 3]) -> Self {
         let [a, b, c] = corners.map(Vec3::from);
         Self {
@@ -44,7 +55,26 @@ impl TriangleRecord {
             light: NO_LIGHT,
             c,
             object: 0,
+            program: 0,
+            vertex_a: 0,
+            vertex_b: 0,
+            vertex_c: 0,
         }
+    }
+
+    /// The triangle with these vertices.
+    pub fn with_vertices(self, [vertex_a, vertex_b, vertex_c]: [u32; 3]) -> Self {
+        Self {
+            vertex_a,
+            vertex_b,
+            vertex_c,
+            ..self
+        }
+    }
+
+    /// The vertices.
+    pub fn vertices(&self) -> [u32; 3] {
+        [self.vertex_a, self.vertex_b, self.vertex_c]
     }
 
     /// The corners, world space.
@@ -67,10 +97,24 @@ record! {
     }
 }
 
+/// The word of a record that its last row begins with.
+#[inline(always)]
+fn last_row<D: Domain>(d: D, triangle: D::U) -> D::U {
+    let first = TriangleRecord::<Offsets>::offsets().program;
+    triangle * d.uint(TriangleRecord::WORDS) + d.uint(first)
+}
+
 /// The index of a triangle's program.
 #[inline(always)]
 pub fn program_of<D: Domain>(d: D, triangle: D::U) -> D::U {
-    d.load(Buffer::TrianglePrograms, triangle)
+    d.load(Buffer::Triangles, last_row(d, triangle))
+}
+
+/// The vertices of a triangle.
+#[inline(always)]
+pub fn vertices_of<D: Domain>(d: D, triangle: D::U) -> [D::U; 3] {
+    let [[_, a, b, c]] = d.load_rows(Buffer::Triangles, last_row(d, triangle));
+    [a, b, c]
 }
 
 /// [`program_of`] outside formulas.

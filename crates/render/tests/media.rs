@@ -21,10 +21,11 @@ const UP: [f64; 3] = [0.0, 0.0, 1.0];
 /// Media 1 to `priorities.len()`, of these priorities, which do not fall.
 fn media(priorities: &[i32]) -> SceneData {
     let mut data = SceneData::default();
-    data.push_triangle(
-        TriangleRecord::new([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
-        0,
-    );
+    data.push(TriangleRecord::new([
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ]));
     let above = |priority: i32| priorities.partition_point(|other| *other <= priority) as u32 + 1;
     let all = std::iter::once(&i32::MIN).chain(priorities);
     for (index, priority) in all.enumerate() {

@@ -4,10 +4,11 @@ use residual_render::domain::{Buffer, Scalar};
 use residual_render::math::vec3::vec3;
 use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{Attributes, Cone, Surface, SurfaceHit, UvRecord, VerticesRecord};
+use residual_render::surface::{Attributes, Cone, Surface, SurfaceHit, UvRecord};
 use residual_render::texture::{
     Image, ImageParam, LinearFloat, Repeat, ScalarSource, TransformParam, Trilinear, UvMap,
 };
+use residual_render::triangle::TriangleRecord;
 
 use crate::support::random::Rng;
 use crate::support::scenes::{FLOOR, scene};
@@ -24,7 +25,7 @@ fn leveled(
     transform: TransformParam,
 ) -> SceneData {
     let mut data = scene(&[FLOOR]);
-    data.push(VerticesRecord { a: 0, b: 1, c: 2 });
+    data.change(0, |floor: TriangleRecord| floor.with_vertices([0, 1, 2]));
     for [x, y, _] in FLOOR {
         data.push(UvRecord {
             u0: x * repetitions[0],

@@ -26,8 +26,6 @@ impl Binding {
     pub const fn of(buffer: Buffer) -> Self {
         match buffer {
             Buffer::Triangles
-            | Buffer::TrianglePrograms
-            | Buffer::Indices
             | Buffer::Normals
             | Buffer::Tangents
             | Buffer::Uvs
@@ -65,7 +63,7 @@ impl Binding {
     }
 }
 
-/// The name of a buffer: `TrianglePrograms` is `triangle_programs`.
+/// The name of a buffer: `LightAlias` is `light_alias`.
 fn buffer_name(buffer: Buffer) -> String {
     let mut name = String::new();
     for letter in format!("{buffer:?}").chars() {

@@ -105,12 +105,7 @@ fn what_is_never_there_is_left_out() {
         assert_eq!(plan.structure.lights, [LightNode::Point]);
         assert_eq!(plan.data.triangle_count(), 2);
         assert_eq!(plan.warnings.len(), 2, "{:?}", plan.warnings);
-        for buffer in [
-            Buffer::Texels,
-            Buffer::Indices,
-            Buffer::Colors,
-            Buffer::Tangents,
-        ] {
+        for buffer in [Buffer::Texels, Buffer::Colors, Buffer::Tangents] {
             assert!(plan.data.buffer(buffer).is_empty(), "{buffer:?}");
         }
         let effects = Effects::of(&plan);

@@ -85,10 +85,6 @@ impl<T> Mask for T where T: Copy + BitAnd<Output = T> + BitOr<Output = T> + Not<
 pub enum Buffer {
     /// A [`TriangleRecord`](crate::triangle::TriangleRecord) for each triangle.
     Triangles,
-    /// The index of its program for each triangle, a word; [`program_of`](crate::triangle::program_of) reads it.
-    TrianglePrograms,
-    /// A [`VerticesRecord`](crate::surface::VerticesRecord) for each triangle. Only where attributes are read.
-    Indices,
     /// A [`NormalRecord`](crate::surface::NormalRecord) for each vertex.
     Normals,
     /// A [`TangentRecord`](crate::surface::TangentRecord) for each vertex.
@@ -131,8 +127,6 @@ impl Buffer {
     /// All of them, in order.
     pub const ALL: [Self; Self::COUNT] = [
         Self::Triangles,
-        Self::TrianglePrograms,
-        Self::Indices,
         Self::Normals,
         Self::Tangents,
         Self::Uvs,

@@ -54,20 +54,6 @@ impl Attributes {
 }
 
 record! {
-    /// The vertices of a triangle, as indices into the buffers of attributes.
-    pub struct VerticesRecord in Indices {
-        row {
-            /// First vertex.
-            a: word,
-            /// Second vertex.
-            b: word,
-            /// Third vertex.
-            c: word,
-        }
-    }
-}
-
-record! {
     /// A vertex's normal.
     pub struct NormalRecord in Normals {
         row {

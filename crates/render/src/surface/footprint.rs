@@ -1,8 +1,9 @@
 //! How much of a surface a ray stands for: what textures are filtered over (Akenine-Möller et al. 2021, "Improved Shader and
 //! Texture Level of Detail Using Ray Cones").
 
-use super::attributes::{Attributes, UvRecord, VerticesRecord};
+use super::attributes::{Attributes, UvRecord};
 use crate::domain::Domain;
+use crate::triangle::vertices_of;
 
 /// The cone of rays that a ray stands for.
 #[derive(Clone, Copy, Debug)]
@@ -49,8 +50,7 @@ impl<D: Domain> Footprint<D> {
     ) -> Self {
         let mut uv_areas = [d.lit(0.0); 2];
         if attributes.uv0 || attributes.uv1 {
-            let vertices = VerticesRecord::load(d, prim);
-            let corners = [vertices.a, vertices.b, vertices.c].map(|v| UvRecord::load(d, v));
+            let corners = vertices_of(d, prim).map(|vertex| UvRecord::load(d, vertex));
             let [a, b, c] = &corners;
             let twice = d.max(area * d.lit(2.0), d.lit(1e-37));
             let cross = |u: fn(&UvRecord<D>) -> D::F, v: fn(&UvRecord<D>) -> D::F| {

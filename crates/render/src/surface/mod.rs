@@ -8,9 +8,7 @@ mod ray;
 mod shading_frame;
 mod texels;
 
-pub use attributes::{
-    Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
-};
+pub use attributes::{Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord};
 pub use footprint::{Cone, Footprint};
 pub use offset::offset_point;
 pub use ray::{PathRay, SurfaceHit};
@@ -22,6 +20,7 @@ use place::Place;
 use crate::domain::Domain;
 use crate::math::spectrum::D_LINE;
 use crate::math::{Frame, Vec3};
+use crate::triangle::vertices_of;
 
 /// The most inputs that boxed programs keep per surface point.
 pub const MAX_INPUTS: usize = 32;
@@ -84,8 +83,7 @@ impl<D: Domain> Surface<D> {
             // Of no use: nothing reads them.
             [prim; 3]
         } else {
-            let vertices = VerticesRecord::load(d, prim);
-            [vertices.a, vertices.b, vertices.c]
+            vertices_of(d, prim)
         };
         let outward = normal.normalize_any(d);
         let wo = -dir.normalize(d);

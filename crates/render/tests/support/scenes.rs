@@ -21,7 +21,7 @@ pub(crate) const FLOOR: Triangle = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 2
 pub(crate) fn scene(triangles: &[Triangle]) -> SceneData {
     let mut data = SceneData::default();
     for &triangle in triangles {
-        data.push_triangle(TriangleRecord::new(triangle), 0);
+        data.push(TriangleRecord::new(triangle));
     }
     data
 }

@@ -10,7 +10,7 @@ use residual_render::light::{
 };
 use residual_render::record::BufferRecord;
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{TangentRecord, VerticesRecord};
+use residual_render::surface::TangentRecord;
 use residual_render::texture::ImageParam;
 use residual_render::tracer::MediumRecord;
 use residual_render::triangle::TriangleRecord;
@@ -124,20 +124,14 @@ pub(crate) fn scene() -> SceneData {
     set_environment(&mut data, header, texels.into_iter());
     for triangle in 0..TRIANGLES {
         let corners = [[0; 3]; 3].map(|corner| corner.map(|_| random.between(-2.0, 2.0)));
-        let record = TriangleRecord {
+        let first = 3 * triangle;
+        data.push(TriangleRecord {
             params: BLOCK * triangle,
-            ..TriangleRecord::new(corners)
-        };
-        data.push_triangle(record, 0);
+            ..TriangleRecord::new(corners).with_vertices([first, first + 1, first + 2])
+        });
         if triangle > 0 {
             data.set_light(triangle as usize, 0);
         }
-        let first = 3 * triangle;
-        data.push(VerticesRecord {
-            a: first,
-            b: first + 1,
-            c: first + 2,
-        });
         for vertex in 0..3 {
             let sign = if triangle % 2 == 0 { 1.0 } else { -1.0 };
             let vertex = (3 * triangle + vertex) as usize;

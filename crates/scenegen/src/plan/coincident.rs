@@ -87,7 +87,7 @@ mod tests {
     fn data(triangles: &[([[f32; 3]; 3], bool, bool)]) -> SceneData {
         let mut data = SceneData::default();
         for (corners, single_sided, alpha_tested) in triangles {
-            data.push_triangle(TriangleRecord::new(*corners), 0);
+            data.push(TriangleRecord::new(*corners));
             data.single_sided.push(*single_sided);
             data.alpha_tested.push(*alpha_tested);
         }

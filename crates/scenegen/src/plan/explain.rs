@@ -104,12 +104,8 @@ impl Plan {
 
     fn triangles(&self) -> String {
         let bytes = TriangleRecord::WORDS * 4;
-        let indexed = match self.data.buffer(Buffer::Indices).is_empty() {
-            true => "without vertices: no program reads any attribute",
-            false => "and 16 for their vertices",
-        };
         format!(
-            "{} of {bytes} bytes (corners, program, parameters, light), {indexed}",
+            "{} of {bytes} bytes (corners, program, parameters, light, object, vertices)",
             self.data.triangle_count()
         )
     }

@@ -4,9 +4,7 @@ use glam::{Mat3, Vec3, Vec4};
 use residual_render::domain::Buffer;
 use residual_render::program::AlphaTestNode;
 use residual_render::scene_data::SceneData;
-use residual_render::surface::{
-    Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord, VerticesRecord,
-};
+use residual_render::surface::{Attributes, ColorRecord, NormalRecord, TangentRecord, UvRecord};
 use residual_render::triangle::TriangleRecord;
 
 use super::camera::Bounds;
@@ -121,7 +119,6 @@ pub(super) fn pack(
 ) -> Result<Geometry, PlanError> {
     let mut visible = visible(scene, pose, materials, warnings)?;
     pack_vertices(&mut visible, data)?;
-    let has_vertices = visible.iter().any(|seen| seen.reads != Attributes::NONE);
     let mut bounds = Bounds::EMPTY;
     let mut objects = Vec::new();
     for (object_index, seen) in (0..).zip(&visible) {
@@ -131,9 +128,6 @@ pub(super) fn pack(
         let positions: Vec<Vec3> = positions.map(|&p| transform.transform_point3(p)).collect();
         positions.iter().for_each(|&p| bounds.add(p));
         pack_triangles(object_index, seen, &positions, data);
-        if has_vertices {
-            pack_indices(seen, data);
-        }
         objects.push(PlannedObject {
             name: seen.instance.name.clone(),
             material: seen.mesh.material,
@@ -252,26 +246,23 @@ fn turned(mesh: &MeshDesc, instance: &InstanceDesc) -> impl Iterator<Item = [u32
 
 fn pack_triangles(object_index: u32, seen: &Visible<'_>, positions: &[Vec3], data: &mut SceneData) {
     let planned = seen.planned;
+    let vertex = |corner: u32| match seen.reads {
+        Attributes::NONE => 0,
+        _ => seen.first_vertex + corner,
+    };
     for triangle in turned(seen.mesh, seen.instance) {
         let corners = triangle.map(|corner| positions[corner as usize].to_array());
         let triangle = TriangleRecord {
             params: planned.params,
             object: object_index,
-            ..TriangleRecord::new(corners)
+            program: planned.program,
+            ..TriangleRecord::new(corners).with_vertices(triangle.map(vertex))
         };
-        data.push_triangle(triangle, planned.program);
+        data.push(triangle);
     }
     let count = data.triangle_count();
     data.single_sided.resize(count, planned.culled);
     data.alpha_tested.resize(count, planned.alpha_tested);
-}
-
-/// The vertices of each triangle; those of a material that reads none are never asked for.
-fn pack_indices(seen: &Visible<'_>, data: &mut SceneData) {
-    for triangle in turned(seen.mesh, seen.instance) {
-        let [a, b, c] = triangle.map(|corner| seen.first_vertex + corner);
-        data.push(VerticesRecord { a, b, c });
-    }
 }
 
 /// The box around all that is seen in any of a scene's poses.

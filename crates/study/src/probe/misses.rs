@@ -194,8 +194,8 @@ mod tests {
                 point(i, j + 1),
                 point(i + 1, j + 1),
             ];
-            data.push_triangle(TriangleRecord::new([a, b, d]), 0);
-            data.push_triangle(TriangleRecord::new([a, d, c]), 0);
+            data.push(TriangleRecord::new([a, b, d]));
+            data.push(TriangleRecord::new([a, d, c]));
         }
         data
     }
@@ -215,7 +215,7 @@ mod tests {
     fn without_shared_edges_nothing_is_said() {
         let mut data = SceneData::default();
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        data.push_triangle(TriangleRecord::new(corners), 0);
+        data.push(TriangleRecord::new(corners));
         assert_eq!(
             Target::new(&data).misses(TraversalPrecision::Fast, 10),
             None
