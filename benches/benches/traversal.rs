@@ -26,7 +26,7 @@ fn traversal(criterion: &mut Criterion) {
             "{} {}/{} {}",
             variant.kernel, variant.width, variant.triangle_packet, variant.precision
         );
-        contenders.push((name, Box::new((variant.make)(&trees, Isa::native()))));
+        contenders.push((name, (variant.make)(&trees, Isa::native())));
     }
     contenders.push(("obvhs BVH2".to_owned(), Box::new(peers::bvh2(&scene.mesh))));
     contenders.push((

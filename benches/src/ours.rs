@@ -10,10 +10,10 @@ use std::rc::Rc;
 use clap::ValueEnum;
 use residual_bvh::{
     AllHits, BuildQuality, Bvh, CompactBvh, Hybrid, Kernel as _, OneByOne, Packets, Phased, Single,
-    build, build_compact,
+    any_hit_packets, build, build_compact, closest_hit_packets,
 };
 
-use crate::contender::Stream;
+use crate::contender::{Columns, Contender, Stream};
 use crate::isa::Isa;
 use crate::mesh::Mesh;
 use crate::on_isa;
@@ -31,18 +31,21 @@ pub enum Kernel {
     Hybrid,
     /// As hybrid, on packets that share vertices: what renderers of sixteen lanes do.
     Compact,
+    /// As compact, of packets that are given and answered in columns.
+    Columns,
     /// One ray, one box.
     Scalar,
 }
 
 impl Kernel {
     /// All, in the order of the tables.
-    pub const ALL: [Kernel; 6] = [
+    pub const ALL: [Kernel; 7] = [
         Kernel::Single,
         Kernel::Packet,
         Kernel::Phased,
         Kernel::Hybrid,
         Kernel::Compact,
+        Kernel::Columns,
         Kernel::Scalar,
     ];
 }
@@ -55,6 +58,7 @@ impl fmt::Display for Kernel {
             Kernel::Phased => "phased",
             Kernel::Hybrid => "hybrid",
             Kernel::Compact => "compact",
+            Kernel::Columns => "columns",
             Kernel::Scalar => "scalar",
         })
     }
@@ -95,7 +99,7 @@ pub struct Variant {
     /// Its precision.
     pub precision: Precision,
     /// The contender.
-    pub make: fn(&Trees<'_>, Isa) -> Stream,
+    pub make: fn(&Trees<'_>, Isa) -> Box<dyn Contender>,
 }
 
 /// All our kernels.
@@ -111,7 +115,7 @@ pub fn variants() -> Vec<Variant> {
                 make: |trees, isa| {
                     let tree = trees.$tree::<$n, $p>();
                     let same = tree.clone();
-                    Stream::new(
+                    Box::new(Stream::new(
                         move |rays, hits| {
                             on_isa!(isa, simd => $trace.closest_hits(
                                 simd, residual_bvh::$precision, tree.bvh.view(), rays, hits, &AllHits))
@@ -120,12 +124,37 @@ pub fn variants() -> Vec<Variant> {
                             on_isa!(isa, simd => $trace.any_hits(
                                 simd, residual_bvh::$precision, same.bvh.view(), rays, occluded, &AllHits))
                         },
-                    )
+                    ))
                 },
             }),*]
         };
     }
-    variants![
+    macro_rules! columns {
+        ($($tree:ident $n:literal x $p:literal, $precision:ident;)*) => {
+            vec![$(Variant {
+                kernel: Kernel::Columns,
+                width: $n,
+                triangle_packet: $p,
+                packet: 32,
+                precision: Precision::$precision,
+                make: |trees, isa| {
+                    let tree = trees.$tree::<$n, $p>();
+                    let same = tree.clone();
+                    Box::new(Columns::<32>::new(
+                        move |rays, hits| {
+                            on_isa!(isa, simd => closest_hit_packets(
+                                simd, residual_bvh::$precision, tree.bvh.view(), rays, hits, &AllHits))
+                        },
+                        move |rays, occluded| {
+                            on_isa!(isa, simd => any_hit_packets(
+                                simd, residual_bvh::$precision, same.bvh.view(), rays, occluded, &AllHits))
+                        },
+                    ))
+                },
+            }),*]
+        };
+    }
+    let mut all = variants![
         Single(Single, 1): get 4 x 4, Fast;
         Single(Single, 1): get 8 x 8, Fast;
         Single(Single, 1): get 16 x 8, Fast;
@@ -144,17 +173,24 @@ pub fn variants() -> Vec<Variant> {
         Phased(Phased, 1): get 8 x 8, Watertight;
         Phased(Phased, 1): get 16 x 16, Watertight;
         Hybrid(Hybrid::<4>, 4): get 4 x 4, Fast;
-        Hybrid(Hybrid::<16>, 16): get 8 x 8, Fast;
-        Hybrid(Hybrid::<16>, 16): get 16 x 16, Fast;
-        Hybrid(Hybrid::<16>, 16): get 8 x 8, Watertight;
-        Hybrid(Hybrid::<16>, 16): get 16 x 16, Watertight;
-        Compact(Hybrid::<16>, 16): compact 16 x 16, Fast;
-        Compact(Hybrid::<16>, 16): compact 16 x 16, Watertight;
+        Hybrid(Hybrid::<32>, 32): get 8 x 8, Fast;
+        Hybrid(Hybrid::<32>, 32): get 16 x 16, Fast;
+        Hybrid(Hybrid::<32>, 32): get 8 x 8, Watertight;
+        Hybrid(Hybrid::<32>, 32): get 16 x 16, Watertight;
+        Compact(Hybrid::<32>, 32): compact 16 x 16, Fast;
+        Compact(Hybrid::<32>, 32): compact 16 x 16, Watertight;
         Scalar(OneByOne, 1): get 2 x 1, Fast;
         Scalar(OneByOne, 1): get 4 x 4, Fast;
         Scalar(OneByOne, 1): get 8 x 8, Fast;
         Scalar(OneByOne, 1): get 16 x 16, Fast;
-    ]
+    ];
+    all.extend(columns![
+        get 8 x 8, Fast;
+        get 8 x 8, Watertight;
+        compact 16 x 16, Fast;
+        compact 16 x 16, Watertight;
+    ]);
+    all
 }
 
 /// What a build cost and gave.

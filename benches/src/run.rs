@@ -158,7 +158,7 @@ fn entries(
             packet: variant.packet,
             precision: variant.precision.to_string(),
         },
-        contender: Box::new((variant.make)(trees, options.isa)),
+        contender: (variant.make)(trees, options.isa),
         embree: None,
     });
     let mut entries: Vec<Entry> = own.collect();
@@ -166,7 +166,12 @@ fn entries(
         entries.push(peer("obvhs-bvh2", peers::bvh2(&scene.mesh)));
         entries.push(peer("obvhs-cwbvh", peers::cwbvh(&scene.mesh)));
     }
-    let is_bundle = |kernel| matches!(kernel, Kernel::Packet | Kernel::Hybrid | Kernel::Compact);
+    let is_bundle = |kernel| {
+        matches!(
+            kernel,
+            Kernel::Packet | Kernel::Hybrid | Kernel::Compact | Kernel::Columns
+        )
+    };
     let robust_packets = variants
         .iter()
         .any(|variant| is_bundle(variant.kernel) && variant.precision != Precision::Fast);

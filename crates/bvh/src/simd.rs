@@ -11,12 +11,13 @@ use fearless_simd::{f32x4, f32x8, f32x16, mask32x4, mask32x8, mask32x16, u8x16};
 use crate::look_up::{
     high_bits, high_bits_4, high_bits_8, high_bits_16, look_up, look_up_4, look_up_8, look_up_16,
 };
+use crate::reduce::{greatest, least};
 
-/// `N` lanes of `f32` on the instruction set that the token `Self` stands for; `N` is 1, 2, 4, 8
-/// or 16.
+/// `N` lanes of `f32` on the instruction set that the token `Self` stands for; `N` is 1, 2, 4, 8,
+/// 16 or 32.
 ///
 /// Every fearless_simd token implements it at all widths, so a function generic in the width
-/// says `S: Width<N>` and needs no other bound. Widths 1 and 2 are arrays.
+/// says `S: Width<N>` and needs no other bound. Widths 1 and 2 are arrays, 32 is a pair.
 pub trait Width<const N: usize>: fearless_simd::Simd {
     /// `N` floats.
     type Float: Copy;
@@ -61,6 +62,10 @@ pub trait Width<const N: usize>: fearless_simd::Simd {
     fn least(self, a: Self::Float) -> f32;
     /// The greatest lane; none may be NaN.
     fn greatest(self, a: Self::Float) -> f32;
+    /// The least lane of each of four; none may be NaN.
+    fn least_of(self, four: [Self::Float; 4]) -> [f32; 4];
+    /// The greatest lane of each of four; none may be NaN.
+    fn greatest_of(self, four: [Self::Float; 4]) -> [f32; 4];
     /// Lane `i` in bit `i`.
     fn bits(self, mask: Self::Mask) -> u32;
     /// Each lane's numbers of three tables of `N`: `[index][table]`. An index has four bits, of which a table of fewer numbers uses
@@ -99,7 +104,7 @@ impl<const N: usize> Stored<N> {
 const SECOND_OPERAND_WINS: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
 
 macro_rules! implement_lanes {
-    ($n:literal, $float:ident, $mask:ident, $bytes:ident, $look_up:ident, $high_bits:ident) => {
+    ($n:literal, $float:ident, $mask:ident, $bytes:ident, $look_up:ident, $high_bits:ident, $of:ident) => {
         impl<S: fearless_simd::Simd> Width<$n> for S {
             type Float = $float<S>;
             type Mask = $mask<S>;
@@ -189,6 +194,14 @@ macro_rules! implement_lanes {
                 a.reduce_max()
             }
             #[inline(always)]
+            fn least_of(self, four: [$float<S>; 4]) -> [f32; 4] {
+                least::$of(self, four)
+            }
+            #[inline(always)]
+            fn greatest_of(self, four: [$float<S>; 4]) -> [f32; 4] {
+                greatest::$of(self, four)
+            }
+            #[inline(always)]
             fn bits(self, mask: $mask<S>) -> u32 {
                 mask.to_bitmask() as u32
             }
@@ -230,15 +243,32 @@ fn load_bytes_16<S: fearless_simd::Simd>(simd: S, array: &[u8; 16]) -> f32x16<S>
     f32x16::load_array(simd, array.map(f32::from))
 }
 
-implement_lanes!(4, f32x4, mask32x4, load_bytes_4, look_up_4, high_bits_4);
-implement_lanes!(8, f32x8, mask32x8, load_bytes_8, look_up_8, high_bits_8);
+implement_lanes!(
+    4,
+    f32x4,
+    mask32x4,
+    load_bytes_4,
+    look_up_4,
+    high_bits_4,
+    of_4
+);
+implement_lanes!(
+    8,
+    f32x8,
+    mask32x8,
+    load_bytes_8,
+    look_up_8,
+    high_bits_8,
+    of_8
+);
 implement_lanes!(
     16,
     f32x16,
     mask32x16,
     load_bytes_16,
     look_up_16,
-    high_bits_16
+    high_bits_16,
+    of_16
 );
 
 /// Too narrow for registers: arrays, left to the compiler.
@@ -331,6 +361,14 @@ macro_rules! implement_narrow_lanes {
             fn greatest(self, a: [f32; $n]) -> f32 {
                 a.into_iter()
                     .fold(f32::NEG_INFINITY, |a, b| if b > a { b } else { a })
+            }
+            #[inline(always)]
+            fn least_of(self, four: [[f32; $n]; 4]) -> [f32; 4] {
+                four.map(|a| Width::<$n>::least(self, a))
+            }
+            #[inline(always)]
+            fn greatest_of(self, four: [[f32; $n]; 4]) -> [f32; 4] {
+                four.map(|a| Width::<$n>::greatest(self, a))
             }
             #[inline(always)]
             fn bits(self, mask: [bool; $n]) -> u32 {

@@ -176,17 +176,20 @@ impl HitFilter for AlphaTested<'_> {
     }
 }
 
-/// Evaluates an expression for the hierarchy, whatever its width, and the kernel of its streams, on instruction set `$S`.
+/// How streams are traced, on whatever instruction set.
+const STREAMS: Hybrid<32> = Hybrid;
+
+/// Evaluates an expression for the hierarchy, whatever its width, on instruction set `$S`, with the kernel of its streams.
 macro_rules! with_tree {
     ($S:ident, $tree:expr, $kernel:ident, $bvh:ident => $call:expr) => {
         match $tree {
             Tree::Four(bvh) => {
-                let ($kernel, $bvh) = (Apart(Hybrid::<4>), bvh.view());
+                let ($kernel, $bvh) = (Apart(STREAMS), bvh.view());
                 $call
             }
             Tree::Eight(bvh) => {
                 if const { native::<$S>() == 8 } {
-                    let ($kernel, $bvh) = (Apart(Hybrid::<16>), bvh.view());
+                    let ($kernel, $bvh) = (Apart(STREAMS), bvh.view());
                     $call
                 } else {
                     unreachable!("built for another instruction set")
@@ -194,7 +197,7 @@ macro_rules! with_tree {
             }
             Tree::Sixteen(bvh) => {
                 if const { native::<$S>() >= 16 } {
-                    let ($kernel, $bvh) = (Apart(Hybrid::<16>), bvh.view());
+                    let ($kernel, $bvh) = (Apart(STREAMS), bvh.view());
                     $call
                 } else {
                     unreachable!("built for another instruction set")

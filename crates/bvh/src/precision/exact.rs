@@ -82,7 +82,7 @@ impl Test for Exact {
             if lanes >> lane & 1 == 0 {
                 continue;
             }
-            if let Some(hit) = meet(rays.ray(lane), &triangles.corners(lane), culling) {
+            if let Some(hit) = meet(&rays.ray(lane), &triangles.corners(lane), culling) {
                 (t[lane], u[lane], v[lane]) = (hit.t, hit.u, hit.v);
                 back |= u32::from(hit.back) << lane;
             }

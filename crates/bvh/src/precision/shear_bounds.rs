@@ -6,10 +6,10 @@
 //! rejected here for the intervals that hold all rays is rejected for each of the rays, without any slack.
 
 use crate::filter::Culling;
-use crate::inlined::{each, inlined};
+use crate::inlined::inlined;
 use crate::layout::class::Axes;
-use crate::layout::columns::Columns;
 use crate::layout::packet::Packet;
+use crate::layout::ray_packet::RayBounds;
 use crate::precision::interval::Interval;
 use crate::precision::shearing::Shearing;
 use crate::precision::triangle::Shear;
@@ -26,36 +26,33 @@ impl<S: Width<W>, const W: usize> ShearBounds<S, W> {
     #[inline(always)]
     pub(crate) fn enclosing<const R: usize>(
         simd: S,
-        columns: &Columns<R>,
+        bounds: &RayBounds,
         rays: &Shear<'_, S, R>,
     ) -> Self
     where
         S: Width<R>,
     {
-        let enclose = inlined(
+        let between = inlined(
             #[inline(always)]
-            |lanes: <S as Width<R>>::Float| {
-                let ends = [
-                    <S as Width<R>>::least(simd, lanes),
-                    <S as Width<R>>::greatest(simd, lanes),
-                ];
-                each(
-                    ends,
-                    #[inline(always)]
-                    |end| <S as Width<W>>::splat(simd, end),
-                )
+            |lo: f32, hi: f32| {
+                [
+                    <S as Width<W>>::splat(simd, lo),
+                    <S as Width<W>>::splat(simd, hi),
+                ]
             },
         );
         let org = inlined(
             #[inline(always)]
-            |axis: usize| enclose(<S as Width<R>>::load(simd, &columns.org[axis])),
+            |axis: usize| between(bounds.lo[axis], bounds.hi[axis]),
         );
         let [kx, ky, kz] = rays.axes();
         let [x, y] = rays.slope();
+        let lo = <S as Width<R>>::least_of(simd, [x, y, y, y]);
+        let hi = <S as Width<R>>::greatest_of(simd, [x, y, y, y]);
         ShearBounds {
             axes: [kx, ky, kz],
             org: [org(kx), org(ky), org(kz)],
-            slope: [enclose(x), enclose(y)],
+            slope: [between(lo[0], hi[0]), between(lo[1], hi[1])],
         }
     }
 

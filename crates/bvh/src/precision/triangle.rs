@@ -5,8 +5,8 @@
 
 use crate::inlined::{each, inlined};
 use crate::layout::class::{Axes, axes};
-use crate::layout::columns::Columns;
 use crate::layout::packet::Packet;
+use crate::layout::ray_packet::RayPacket;
 use crate::precision::ending::Ending;
 use crate::precision::shearing::Shearing;
 use crate::ray::Ray;
@@ -139,9 +139,16 @@ pub struct Shear<'a, S: Width<W>, const W: usize> {
     /// `1 / dir.z`.
     pub(crate) inv_z: S::Float,
     pub(crate) tmin: S::Float,
-    /// Where the rays are, and which of them is in which lane; of no use in the lanes left over.
-    rays: &'a [Ray],
-    members: &'a [u16],
+    rays: Rays<'a, W>,
+}
+
+/// The rays as they were given.
+#[derive(Clone, Copy)]
+enum Rays<'a, const W: usize> {
+    /// The same in every lane.
+    One(&'a Ray),
+    /// A ray a lane.
+    Each(&'a RayPacket<W>),
 }
 
 impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
@@ -161,38 +168,30 @@ impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
             slope: [simd.splat(shear.slope[0]), simd.splat(shear.slope[1])],
             inv_z: simd.splat(shear.inv_z),
             tmin: simd.splat(tmin),
-            rays: std::slice::from_ref(ray),
-            members: &[0],
+            rays: Rays::One(ray),
         }
     }
 
-    /// A ray a lane, all with these axes: `members` of `rays`.
+    /// A ray a lane, all with these axes, whose intervals begin at `tmin`.
     #[inline(always)]
-    pub(crate) fn of_rays(
-        simd: S,
-        columns: &Columns<W>,
-        rays: &'a [Ray],
-        members: &'a [u16],
-        axes: Axes,
-    ) -> Self {
+    pub(crate) fn of_packet(simd: S, rays: &'a RayPacket<W>, tmin: &[f32; W], axes: Axes) -> Self {
         let [kx, ky, kz] = axes;
         let dir = each(
             axes,
             #[inline(always)]
-            |axis| simd.load(&columns.dir[axis]),
+            |axis| simd.load(&rays.dir[axis]),
         );
         Shear {
             axes,
             org: [
-                simd.load(&columns.org[kx]),
-                simd.load(&columns.org[ky]),
-                simd.load(&columns.org[kz]),
+                simd.load(&rays.org[kx]),
+                simd.load(&rays.org[ky]),
+                simd.load(&rays.org[kz]),
             ],
             slope: [simd.div(dir[0], dir[2]), simd.div(dir[1], dir[2])],
             inv_z: simd.div(simd.splat(1.0), dir[2]),
-            tmin: simd.load(&columns.tmin),
-            rays,
-            members,
+            tmin: simd.load(tmin),
+            rays: Rays::Each(rays),
         }
     }
 
@@ -210,8 +209,11 @@ impl<'a, S: Width<W>, const W: usize> Shear<'a, S, W> {
 
     /// The ray in a lane.
     #[inline(always)]
-    pub(crate) fn ray(&self, lane: usize) -> &'a Ray {
-        &self.rays[self.members[lane.min(self.members.len() - 1)] as usize]
+    pub(crate) fn ray(&self, lane: usize) -> Ray {
+        match self.rays {
+            Rays::One(ray) => *ray,
+            Rays::Each(rays) => rays.ray(lane),
+        }
     }
 
     /// A point, given by its coordinate along each axis, in the space where the ray is the z axis; z is not scaled.

@@ -133,7 +133,7 @@ impl Test for Watertight {
         let ill = inside.lanes & !simd.bits(well);
         if ill != 0 {
             hits.mend(simd, ill, |lane| {
-                ill_conditioned_hit(rays.ray(lane), &triangles.corners(lane))
+                ill_conditioned_hit(&rays.ray(lane), &triangles.corners(lane))
             });
         }
         hits.within(simd, rays.tmin, tmax, ending)

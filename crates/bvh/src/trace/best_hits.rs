@@ -2,7 +2,7 @@
 
 use crate::filter::{Culling, HitFilter, improve};
 use crate::inlined::inlined;
-use crate::layout::columns::Columns;
+use crate::layout::ray_packet::{HitPacket, RayPacket};
 use crate::layout::triangle_packet::SINGLE_SIDED;
 use crate::precision::ending::Early;
 use crate::precision::triangle::{LaneHits, Shear, Triangles};
@@ -24,10 +24,11 @@ pub(crate) struct BestHits<const R: usize> {
 }
 
 impl<const R: usize> BestHits<R> {
+    /// None, of rays whose intervals end at `tmax`.
     #[inline(always)]
-    pub(crate) fn new(columns: &Columns<R>) -> BestHits<R> {
+    pub(crate) fn none(tmax: [f32; R]) -> BestHits<R> {
         BestHits {
-            t: columns.tmax,
+            t: tmax,
             u: [0.0; R],
             v: [0.0; R],
             prim: [f32::from_bits(Hit::NONE); R],
@@ -38,6 +39,23 @@ impl<const R: usize> BestHits<R> {
     #[inline(always)]
     pub(crate) fn farthest<S: Width<R>>(&self, simd: S) -> f32 {
         simd.greatest(simd.load(&self.t))
+    }
+
+    /// The hits of these rays, when there are no others to come.
+    #[inline(always)]
+    pub(crate) fn finish(&self, rays: &RayPacket<R>, hits: &mut HitPacket<R>) {
+        for lane in 0..R {
+            let prim = self.prim[lane].to_bits();
+            let is_miss = prim == Hit::NONE;
+            hits.t[lane] = if is_miss {
+                rays.tmax[lane]
+            } else {
+                self.t[lane]
+            };
+            hits.u[lane] = self.u[lane];
+            hits.v[lane] = self.v[lane];
+            hits.prim[lane] = prim;
+        }
     }
 
     #[inline(always)]
@@ -95,7 +113,7 @@ impl<const R: usize> BestHits<R> {
             };
             let back = test.back >> lane & 1 == 1;
             let mut improved = self.hit(lane);
-            if improve(&mut improved, hit, back, shear.ray(lane), filter) {
+            if improve(&mut improved, hit, back, &shear.ray(lane), filter) {
                 self.set(lane, &improved, goal);
                 found = true;
             }

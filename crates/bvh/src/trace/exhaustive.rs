@@ -9,7 +9,7 @@
 
 use crate::filter::HitFilter;
 use crate::layout::class::{AXES, Axes, axes_index};
-use crate::layout::columns::Columns;
+use crate::layout::ray_packet::{HitPacket, Intervals, RayPacket};
 use crate::precision::shearing::Shearing;
 use crate::precision::triangle::{Shear, Triangles};
 use crate::precision::triangle_test::Precision;
@@ -85,9 +85,9 @@ impl<S, Pr: Precision, F: HitFilter, G: Goal> ExhaustiveKernel<'_, S, Pr, F, G> 
             table,
             ..
         } = *self;
-        let mut columns = Columns::<LANES>::gather(rays, members);
-        columns.clip(members.len());
-        let shear = Shear::<S, LANES>::of_rays(simd, &columns, rays, members, axes);
+        let rays = RayPacket::<LANES>::gather(rays, members);
+        let Intervals { tmin, tmax } = rays.intervals(u32::MAX >> (32 - members.len()));
+        let shear = Shear::<S, LANES>::of_packet(simd, &rays, &tmin, axes);
         for (sheared, vertex) in sheared.iter_mut().zip(table.vertices()) {
             *sheared = shear.sheared::<Pr::Shearing>(
                 simd,
@@ -105,7 +105,7 @@ impl<S, Pr: Precision, F: HitFilter, G: Goal> ExhaustiveKernel<'_, S, Pr, F, G> 
             candidates[count % MOST_TRIANGLES] = index as u8;
             count += usize::from(lanes != 0);
         }
-        let mut best = BestHits::new(&columns);
+        let mut best = BestHits::none(tmax);
         for &candidate in &candidates[..count] {
             let triangle = &table.triangles()[usize::from(candidate)];
             let found = best.improve(
@@ -121,15 +121,10 @@ impl<S, Pr: Precision, F: HitFilter, G: Goal> ExhaustiveKernel<'_, S, Pr, F, G> 
                 break;
             }
         }
+        let mut hits = HitPacket::misses(&rays);
+        best.finish(&rays, &mut hits);
         for (lane, &member) in members.iter().enumerate() {
-            let ray = usize::from(member);
-            let hit = best.hit(lane);
-            let hit = if hit.is_hit() {
-                hit
-            } else {
-                Hit::miss(rays[ray].tmax)
-            };
-            answer(ray, hit);
+            answer(usize::from(member), hits.hit(lane));
         }
     }
 }

@@ -53,15 +53,7 @@ where
             filter,
             goal,
         } = *self;
-        let packets = PacketKernel {
-            simd,
-            precision,
-            bvh,
-            filter,
-            goal,
-            is_moderate: bvh.is_moderate(),
-            few: R as u32 / 4,
-        };
+        let packets = PacketKernel::hybrid::<R>(simd, precision, bvh, filter, goal);
         let phased = PhasedKernel {
             simd,
             precision,

@@ -4,6 +4,7 @@
 mod answers;
 pub(crate) mod apart;
 mod best_hits;
+pub(crate) mod columns;
 pub(crate) mod cost;
 mod counting_sort;
 mod exhaustive;

@@ -18,7 +18,7 @@
 use crate::inlined::{each, inlined};
 use crate::layout::boxes::Boxes;
 use crate::layout::class::Octant;
-use crate::layout::columns::Columns;
+use crate::layout::ray_packet::{RayBounds, RayPacket};
 use crate::ray::Ray;
 use crate::simd::Width;
 
@@ -42,15 +42,15 @@ impl Constants {
     #[inline(always)]
     fn new<S: Width<4>>(
         simd: S,
-        near_org: [f32; 4],
+        near_org: S::Float,
         near_inv: S::Float,
-        far_org: [f32; 4],
+        far_org: S::Float,
         far_inv: S::Float,
     ) -> Self {
         let near_scale = simd.mul(near_inv, simd.splat(1.0 - STRETCH));
         let far_scale = simd.mul(far_inv, simd.splat(1.0 + STRETCH));
-        let near_shift = shift(simd, simd.load(&near_org), near_scale, -REACH);
-        let far_shift = shift(simd, simd.load(&far_org), far_scale, REACH);
+        let near_shift = shift(simd, near_org, near_scale, -REACH);
+        let far_shift = shift(simd, far_org, far_scale, REACH);
         let array = inlined(
             #[inline(always)]
             |lanes: S::Float| {
@@ -97,7 +97,7 @@ fn inverse<S: Width<W>, const W: usize>(
 #[inline(always)]
 fn inverse_of_rays<S: Width<R>, const R: usize>(
     simd: S,
-    rays: &Columns<R>,
+    rays: &RayPacket<R>,
     octant: Octant,
 ) -> [S::Float; 3] {
     let size = each(
@@ -136,7 +136,7 @@ impl RaySlab {
         let longest = simd.splat(ray.longest());
         let size = simd.select(0b111, simd.abs(dir), longest);
         let inv = inverse(simd, sign, size, longest);
-        let org = lanes(ray.org, ray.tmin);
+        let org = simd.load(&lanes(ray.org, ray.tmin));
         let octant = [0, 1, 2].map(|axis| negative >> axis & 1 == 1);
         RaySlab {
             constants: Constants::new(simd, org, inv, org, inv),
@@ -176,7 +176,12 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
 
     /// A ray a lane, all of one octant, and valid.
     #[inline(always)]
-    pub(crate) fn of_rays(simd: S, rays: &Columns<N>, octant: Octant) -> Slab<S, N> {
+    pub(crate) fn of_rays(
+        simd: S,
+        rays: &RayPacket<N>,
+        tmin: &[f32; N],
+        octant: Octant,
+    ) -> Slab<S, N> {
         let axes = [0, 1, 2_usize];
         let inv = inverse_of_rays(simd, rays, octant);
         let scale = inlined(
@@ -206,7 +211,7 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
             far_scale,
             far_shift: shift(far_scale, REACH),
             near_row: near_rows(octant),
-            tmin: simd.load(&rays.tmin),
+            tmin: simd.load(tmin),
         }
     }
 
@@ -215,36 +220,39 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
     #[inline(always)]
     pub(crate) fn enclosing<const R: usize>(
         simd: S,
-        rays: &Columns<R>,
+        rays: &RayPacket<R>,
+        bounds: &RayBounds,
         octant: Octant,
     ) -> Slab<S, N>
     where
         S: Width<R> + Width<4>,
     {
-        let inv = inverse_of_rays(simd, rays, octant);
-        let (mut near_org, mut far_org) = ([0.0; 4], [0.0; 4]);
-        let (mut near_inv, mut far_inv) = ([0.0; 4], [0.0; 4]);
-        for axis in 0..3 {
-            let org = <S as Width<R>>::load(simd, &rays.org[axis]);
-            let (lo_org, hi_org) = range::<S, R>(simd, org);
-            let (lo_inv, hi_inv) = range::<S, R>(simd, inv[axis]);
-            // Where planes lie behind an origin the bounds are wrong, but below zero as they
-            // should.
-            (near_org[axis], far_org[axis], near_inv[axis], far_inv[axis]) = if octant[axis] {
-                (lo_org, hi_org, hi_inv, lo_inv)
-            } else {
-                (hi_org, lo_org, lo_inv, hi_inv)
-            };
-        }
-        let [near_inv, far_inv] = each(
-            [near_inv, far_inv],
+        let [x, y, z] = inverse_of_rays(simd, rays, octant);
+        let inv = [
+            <S as Width<R>>::least_of(simd, [x, y, z, z]),
+            <S as Width<R>>::greatest_of(simd, [x, y, z, z]),
+        ];
+        let negative = octant_bits(octant);
+        let choose = inlined(
             #[inline(always)]
-            |inv| <S as Width<4>>::load(simd, &inv),
+            |a: &[f32; 4], b: &[f32; 4]| {
+                let [a, b] = each(
+                    [*a, *b],
+                    #[inline(always)]
+                    |x| <S as Width<4>>::load(simd, &x),
+                );
+                <S as Width<4>>::select(simd, negative, a, b)
+            },
         );
-        let constants = Constants::new(simd, near_org, near_inv, far_org, far_inv);
-        let tmin = <S as Width<R>>::load(simd, &rays.tmin);
-        let tmin = <S as Width<R>>::least(simd, tmin);
-        Slab::splat(simd, &constants, near_rows(octant), tmin)
+        // Where planes lie behind an origin the bounds are wrong, but below zero as they should.
+        let constants = Constants::new(
+            simd,
+            choose(&bounds.lo, &bounds.hi),
+            choose(&inv[1], &inv[0]),
+            choose(&bounds.hi, &bounds.lo),
+            choose(&inv[0], &inv[1]),
+        );
+        Slab::splat(simd, &constants, near_rows(octant), bounds.lo[3])
     }
 
     #[inline(always)]
@@ -329,10 +337,9 @@ impl<S: Width<N>, const N: usize> Slab<S, N> {
     }
 }
 
-/// The least and the greatest lane.
 #[inline(always)]
-fn range<S: Width<R>, const R: usize>(simd: S, lanes: S::Float) -> (f32, f32) {
-    (simd.least(lanes), simd.greatest(lanes))
+fn octant_bits([x, y, z]: Octant) -> u32 {
+    u32::from(x) | u32::from(y) << 1 | u32::from(z) << 2
 }
 
 #[inline(always)]

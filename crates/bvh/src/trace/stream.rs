@@ -53,13 +53,13 @@ pub struct Single;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Phased;
 
-/// Packets of `R` rays (4, 8 or 16), sorted by direction within a window: good for coherent rays
+/// Packets of `R` rays (4, 8, 16 or 32), sorted by direction within a window: good for coherent rays
 /// only.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Packets<const R: usize>;
 
-/// Where neighbours are alike, packets of `R` rays (4, 8 or 16; sixteen are the fastest with registers of eight numbers,
-/// too) until few of them agree, then single rays; elsewhere many rays in flight, as [`Phased`], in small hierarchies one after the other. Of up to 85 triangles it
+/// Where neighbours are alike, packets of `R` rays (4, 8, 16 or 32; the more, the faster, with registers of eight or sixteen
+/// numbers) until few of them agree, then single rays; elsewhere many rays in flight, as [`Phased`], in small hierarchies one after the other. Of up to 85 triangles it
 /// tests all, with sixteen rays at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hybrid<const R: usize>;

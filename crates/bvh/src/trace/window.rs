@@ -5,8 +5,8 @@ use std::ops::Range;
 use crate::filter::HitFilter;
 use crate::layout::boxes::Boxes;
 use crate::layout::class::{Class, axes};
-use crate::layout::columns::Columns;
 use crate::layout::packet::Packet;
+use crate::layout::ray_packet::{HitPacket, RayPacket};
 use crate::precision::triangle_test::Precision;
 use crate::ray::{Hit, Ray};
 use crate::simd::Width;
@@ -129,14 +129,34 @@ where
         const { assert!(R <= 32) };
         for (rays, hits) in rays.chunks(R).zip(hits.chunks_mut(R)) {
             let members = &IN_ORDER[..rays.len()];
-            let columns = match rays.as_array::<R>() {
-                Some(rays) => Columns::of(self.simd, rays),
-                None => Columns::<R>::gather(rays, members),
+            let packet = match rays.as_array::<R>() {
+                Some(rays) => RayPacket::of(self.simd, rays),
+                None => RayPacket::<R>::gather(rays, members),
             };
-            match columns.class(self.simd) {
-                Some(class) => self.trace(columns, rays, members, class, hits),
-                None => self.sort::<R>(rays, hits),
+            let are_valid = packet.valid(self.simd) == u32::MAX >> (32 - R);
+            match packet.class(self.simd) {
+                Some(class) if are_valid => self.members(&packet, members, class, hits),
+                _ => self.sort::<R>(rays, hits),
             }
+        }
+    }
+
+    /// Traces the first rays of a packet, whose places in the window are `members`. All are of one class.
+    #[inline(always)]
+    fn members<const R: usize>(
+        &self,
+        packet: &RayPacket<R>,
+        members: &[u16],
+        class: Class,
+        hits: &mut [Hit],
+    ) where
+        S: Width<N> + Width<P> + Width<R>,
+    {
+        let mut found = HitPacket::misses(packet);
+        let active = u32::MAX >> (32 - members.len());
+        self.trace(packet, active, class, &mut found);
+        for (lane, &member) in members.iter().enumerate() {
+            hits[member as usize] = found.hit(lane);
         }
     }
 
@@ -154,8 +174,8 @@ where
             for members in order[start as usize..end as usize].chunks(R) {
                 if members.len() as u32 > self.few {
                     let class = Class::of(&rays[members[0] as usize]);
-                    let columns = Columns::<R>::gather(rays, members);
-                    self.trace(columns, rays, members, class, hits);
+                    let packet = RayPacket::<R>::gather(rays, members);
+                    self.members(&packet, members, class, hits);
                 } else {
                     for &member in members {
                         hits[member as usize] = self.single(&rays[member as usize]);

@@ -148,7 +148,7 @@ fn check_filter<F: HitFilter>(mesh: &Mesh, rays: &[Ray], filter: &F) {
         .collect();
     let bvh = compact::<16>(mesh, BuildQuality::High);
     dispatch!(Level::new(), simd => {
-        check_kernel(simd, Hybrid::<16>, Watertight, &bvh, rays, filter, &expected);
+        check_kernel(simd, Hybrid::<32>, Watertight, &bvh, rays, filter, &expected);
     });
 }
 
@@ -233,10 +233,10 @@ fn precisions_agree_with_plain_packets() {
     dispatch!(Level::new(), simd => {
         Apart(Single).closest_hits(simd, Exact, plain.view(), &rays, &mut expected, &AllHits);
         check_kernel(simd, Single, Exact, &compact, &rays, &AllHits, &expected);
-        check_kernel(simd, Hybrid::<16>, Exact, &compact, &rays, &AllHits, &expected);
+        check_kernel(simd, Hybrid::<32>, Exact, &compact, &rays, &AllHits, &expected);
         Apart(Single).closest_hits(simd, Fast, plain.view(), &rays, &mut expected, &AllHits);
         check_kernel(simd, Single, Fast, &compact, &rays, &AllHits, &expected);
-        check_kernel(simd, Hybrid::<16>, Fast, &compact, &rays, &AllHits, &expected);
+        check_kernel(simd, Hybrid::<32>, Fast, &compact, &rays, &AllHits, &expected);
     });
     assert!(expected.iter().filter(|hit| hit.is_hit()).count() > rays.len() / 3);
 }

@@ -13,7 +13,7 @@ use residual_bvh::{
 use crate::mesh::{Mesh, jittered_icosphere};
 use crate::oracle::{closest_hit_of_all, exact_closest_hit_of_all};
 use crate::random::Random;
-use crate::runner::{aimed, closest_hit, same};
+use crate::runner::{Columns, aimed, closest_hit, same};
 use crate::tally::{Counts, Tally, check};
 
 /// Rays that are traced as one stream: not a whole number of windows or packets.
@@ -65,12 +65,12 @@ combinations!(best:
     n2p4(2, 4): Exact [Hybrid::<8>];
     n4p1(4, 1): Exact [Hybrid::<8>];
     n4p4(4, 4): Fast [Single, Packets::<4>, Hybrid::<4>], Watertight [Hybrid::<4>];
-    n4p8(4, 8): Watertight [Hybrid::<16>];
+    n4p8(4, 8): Watertight [Hybrid::<16>, Columns::<4>];
     n8p4(8, 4): Exact [Single, Phased];
-    n8p8(8, 8): Watertight [Packets::<8>, Hybrid::<8>], Fast [Hybrid::<8>], Exact [Hybrid::<8>];
+    n8p8(8, 8): Watertight [Packets::<8>, Hybrid::<32>], Fast [Columns::<32>], Exact [Hybrid::<8>];
     n8p16(8, 16): Watertight [Single, Phased];
     n16p8(16, 8): Watertight [Hybrid::<8>];
-    n16p16(16, 16): Exact [Packets::<16>, Hybrid::<16>], Fast [Single, Phased];
+    n16p16(16, 16): Exact [Packets::<32>, Columns::<32>], Fast [Single, Phased, Hybrid::<32>], Watertight [Columns::<32>];
     n2p8(2, 8): Watertight [OneByOne];
     n4p16(4, 16): Exact [OneByOne];
     n8p1(8, 1): Exact [OneByOne];
@@ -133,6 +133,10 @@ impl<const R: usize> Counted for Packets<R> {
 
 impl<const R: usize> Counted for Hybrid<R> {
     const INDEX: usize = 2;
+}
+
+impl<const R: usize> Counted for Columns<R> {
+    const INDEX: usize = 5;
 }
 
 impl Counted for OneByOne {

@@ -1,8 +1,9 @@
 //! The one runner, which holds every width and instruction set against the oracle.
 use fearless_simd::{Level, Simd};
 use residual_bvh::{
-    AllHits, Boxes, BuildQuality, Bvh, BvhView, FrontHits, Hit, HitFilter, MarkedHits, Packet,
-    Precision, Ray, Watertight, Width, build,
+    AllHits, Boxes, BuildQuality, Bvh, BvhView, FrontHits, Hit, HitFilter, HitPacket, Kernel,
+    MarkedHits, Packet, Precision, Ray, RayPacket, Watertight, Width, any_hit_packets, build,
+    closest_hit_packets,
 };
 
 use crate::mesh::Mesh;
@@ -106,6 +107,58 @@ impl Widths {
 pub(crate) fn same(a: &Hit, b: &Hit) -> bool {
     let bits = |x: f32| if x.is_nan() { u32::MAX } else { x.to_bits() };
     (bits(a.t), bits(a.u), bits(a.v), a.prim) == (bits(b.t), bits(b.u), bits(b.v), b.prim)
+}
+
+/// Packets of `R` rays that are given and answered in columns, as a kernel of streams.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns<const R: usize>;
+
+impl<S, const N: usize, const P: usize, const R: usize> Kernel<S, N, P> for Columns<R>
+where
+    S: Width<N> + Width<P> + Width<R>,
+{
+    #[inline(always)]
+    fn closest_hits(
+        self,
+        simd: S,
+        precision: impl Precision,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
+        rays: &[Ray],
+        hits: &mut [Hit],
+        filter: &impl HitFilter,
+    ) {
+        let packets: Vec<RayPacket<R>> = rays.chunks(R).map(RayPacket::of_rays).collect();
+        let mut found = vec![HitPacket::misses(&RayPacket::NONE); packets.len()];
+        closest_hit_packets(simd, precision, bvh, &packets, &mut found, filter);
+        for (index, hit) in hits.iter_mut().enumerate() {
+            *hit = found[index / R].hit(index % R);
+        }
+    }
+
+    #[inline(always)]
+    fn any_hits(
+        self,
+        simd: S,
+        precision: impl Precision,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
+        rays: &[Ray],
+        occluded: &mut [bool],
+        filter: &impl HitFilter,
+    ) {
+        let packets: Vec<RayPacket<R>> = rays.chunks(R).map(RayPacket::of_rays).collect();
+        let mut found = vec![0; packets.len()];
+        any_hit_packets(simd, precision, bvh, &packets, &mut found, filter);
+        for (index, occluded) in occluded.iter_mut().enumerate() {
+            *occluded = found[index / R] >> (index % R) & 1 == 1;
+        }
+        let beyond = found.last().map_or(0, |bits| {
+            bits.checked_shr((rays.len() % R) as u32).unwrap_or(0)
+        });
+        assert!(
+            rays.len().is_multiple_of(R) || beyond == 0,
+            "lanes without rays hit nothing"
+        );
+    }
 }
 
 /// Rejects a third of the triangles and the half of each that is near its third vertex.

@@ -12,7 +12,7 @@ use residual_bvh::{
 use crate::mesh::{Mesh, fan, grid, jittered_icosphere, soup};
 use crate::oracle::closest_hit_of_all;
 use crate::random::Random;
-use crate::runner::{Holes, aimed, same, trials};
+use crate::runner::{Columns, Holes, aimed, same, trials};
 
 /// Lengths around the number of rays in flight, packets and windows, and around as many as make it worth while to test all
 /// triangles.
@@ -106,11 +106,11 @@ fn check(mesh: &Mesh, rays: &[Ray]) -> usize {
     dispatch!(Level::new(), simd => {
         compare(simd, Hybrid::<8>, eight.view(), rays, &front, &FrontHits);
         compare(simd, Phased, eight.view(), rays, &marked, &MarkedHits);
-        compare(simd, Hybrid::<8>, eight.view(), rays, &marked, &MarkedHits);
+        compare(simd, Hybrid::<32>, eight.view(), rays, &marked, &MarkedHits);
         compare(simd, Phased, eight.view(), rays, &holes, &Holes);
-        compare(simd, Hybrid::<8>, eight.view(), rays, &holes, &Holes);
+        compare(simd, Columns::<32>, eight.view(), rays, &holes, &Holes);
         compare(simd, Phased, sixteen.view(), rays, &all, &AllHits);
-        compare(simd, Hybrid::<8>, sixteen.view(), rays, &all, &AllHits);
+        compare(simd, Columns::<8>, sixteen.view(), rays, &all, &AllHits);
         compare(simd, Phased, quantized.view(), rays, &all, &AllHits);
     });
     all.iter().filter(|hit| hit.is_hit()).count()

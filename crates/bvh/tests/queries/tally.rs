@@ -3,7 +3,14 @@
 use std::ops::AddAssign;
 
 /// The kernels that are compared.
-pub(crate) const KERNELS: [&str; 5] = ["single", "packets", "hybrid", "one by one", "phased"];
+pub(crate) const KERNELS: [&str; 6] = [
+    "single",
+    "packets",
+    "hybrid",
+    "one by one",
+    "phased",
+    "columns",
+];
 
 /// What was found; `[kind of ray]` is random or aimed.
 #[derive(Clone, Copy, Default)]

@@ -5,7 +5,7 @@ use fearless_simd::{Level, dispatch};
 use super::ShearBounds;
 use crate::filter::Culling;
 use crate::layout::class::Class;
-use crate::layout::columns::Columns;
+use crate::layout::ray_packet::RayPacket;
 use crate::layout::triangle_packet::TrianglePacket;
 use crate::precision::fast::Fast;
 use crate::precision::triangle::Shear;
@@ -70,13 +70,16 @@ fn check<S: Width<16>, P: Test>(simd: S, precision: P, culling: Culling) -> [u32
     for _ in 0..2000 {
         let rays = bundle(&mut random);
         let packet = triangles(&rays, &mut random);
-        let columns = Columns::of(simd, &rays);
-        let Some(Class { axes, .. }) = columns.class(simd) else {
+        let packet_of_rays = RayPacket::of(simd, &rays);
+        let Some(Class { axes, .. }) = packet_of_rays.class(simd) else {
             continue;
         };
-        let members: [u16; 16] = std::array::from_fn(|lane| lane as u16);
-        let shear = Shear::<S, 16>::of_rays(simd, &columns, &rays, &members, axes);
-        let bounds = ShearBounds::<S, 16>::enclosing(simd, &columns, &shear);
+        let shear = Shear::<S, 16>::of_packet(simd, &packet_of_rays, &[0.0; 16], axes);
+        let bounds = ShearBounds::<S, 16>::enclosing(
+            simd,
+            &packet_of_rays.bounds(simd, &packet_of_rays.intervals(u32::MAX)),
+            &shear,
+        );
         let all = precision.candidates_of_rays(simd, &bounds, &packet, culling) & 0xffff;
         for ray in &rays {
             let shear = Shear::<S, 16>::of_ray(simd, ray, 0.0);
