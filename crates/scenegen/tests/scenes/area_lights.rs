@@ -188,6 +188,11 @@ fn impossible_numbers_have_their_defaults() {
     }
     assert!((vector_area(&scene, 0).length() - 1.0).abs() < 1e-6);
     assert_eq!(scene.materials[0].emission.factor, [1000.0; 3]);
+
+    let square = json!([{ "type": "rect", "rect": [2, 1] }]);
+    let scene = file(&square, &json!([node(0)])).import().unwrap();
+    assert!(warns(&scene, "lights/0", "rect is no object"));
+    assert!((vector_area(&scene, 0).length() - 1.0).abs() < 1e-6);
 }
 
 /// A node has one light, however many copies of its mesh there are; hidden nodes have none.

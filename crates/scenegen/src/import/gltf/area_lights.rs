@@ -163,8 +163,14 @@ impl Outline {
             },
             // What the draft says of files without the member.
             None | Some(Some("rect")) => {
-                let rect = light.get("rect").and_then(Value::as_object);
-                let aspect = rect.map_or(1.0, |rect| number(rect, "aspect", 1.0, at, warnings));
+                let aspect = match light.get("rect") {
+                    None => 1.0,
+                    Some(Value::Object(rect)) => number(rect, "aspect", 1.0, at, warnings),
+                    Some(_) => {
+                        warnings.push(at, "rect is no object; the light is a square");
+                        1.0
+                    }
+                };
                 Self::Rectangle(DVec2::new(half * aspect, half).as_vec2())
             }
             Some(_) => {
