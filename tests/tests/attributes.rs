@@ -325,4 +325,6 @@ fn without_readers_there_are_no_vertices() {
     ] {
         assert!(plan.data.buffer(buffer).is_empty(), "{buffer:?}");
     }
+    let mut triangles = plan.data.records::<TriangleRecord>();
+    assert!(triangles.all(|triangle| triangle.vertices() == [0; 3]));
 }

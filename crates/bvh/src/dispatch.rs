@@ -158,7 +158,7 @@ mod sealed {
     }
 }
 
-/// Rays in a packet of a stream, on whatever instruction set: two or four registers of them make up for each other's waiting.
+/// Rays in a packet of a stream, on whatever instruction set: two to eight registers of them make up for each other's waiting.
 const PACKET: usize = 32;
 
 /// A macro, because a function cannot ask that every instruction set has a width.

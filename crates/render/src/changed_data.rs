@@ -77,7 +77,10 @@ mod tests {
 
     fn data(corners: [[f32; 3]; 3]) -> SceneData {
         let mut data = SceneData::default();
-        data.push(TriangleRecord::new(corners));
+        data.push(TriangleRecord {
+            program: 7,
+            ..TriangleRecord::new(corners)
+        });
         data.buffer_mut(Buffer::Texels).push(9);
         data
     }

@@ -3,6 +3,7 @@
 use glam::Vec4;
 use residual_render::domain::Buffer;
 use residual_render::program::LightNode;
+use residual_render::triangle::TriangleRecord;
 use residual_scenegen::desc::{
     AlphaMode, EnvironmentDesc, MaterialDesc, MetallicRoughness, NormalMap, Texels,
 };
@@ -108,6 +109,8 @@ fn what_is_never_there_is_left_out() {
         for buffer in [Buffer::Texels, Buffer::Colors, Buffer::Tangents] {
             assert!(plan.data.buffer(buffer).is_empty(), "{buffer:?}");
         }
+        let mut triangles = plan.data.records::<TriangleRecord>();
+        assert!(triangles.all(|triangle| triangle.vertices() == [0; 3]));
         let effects = Effects::of(&plan);
         for effect in [
             Effect::EmittingSurfaces,

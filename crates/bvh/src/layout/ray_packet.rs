@@ -175,46 +175,42 @@ impl<const R: usize> RayPacket<R> {
         columns
     }
 
+    /// The sizes of the directions' components.
+    #[inline(always)]
+    fn sizes<S: Width<R>>(&self, simd: S) -> [S::Float; 3] {
+        each(
+            [0, 1, 2_usize],
+            #[inline(always)]
+            |axis| simd.abs(simd.load(&self.dir[axis])),
+        )
+    }
+
     /// The rays that are [valid](Ray::is_valid), as bits.
     #[inline(always)]
     pub(crate) fn valid<S: Width<R>>(&self, simd: S) -> u32 {
         let largest = simd.splat(f32::MAX);
-        let load = inlined(
-            #[inline(always)]
-            |column: &[f32; R]| simd.load(column),
-        );
-        let size = each(
-            [0, 1, 2_usize],
-            #[inline(always)]
-            |axis| simd.abs(load(&self.dir[axis])),
-        );
         let finite = inlined(
             #[inline(always)]
             |size: S::Float| simd.bits(simd.le(size, largest)),
         );
-        let mut valid = simd.bits(simd.le(load(&self.tmin), load(&self.tmax)));
+        let size = self.sizes(simd);
+        let mut valid = simd.bits(simd.le(simd.load(&self.tmin), simd.load(&self.tmax)));
         for (&size, org) in size.iter().zip(&self.org) {
-            valid &= finite(size) & finite(simd.abs(load(org)));
+            valid &= finite(size) & finite(simd.abs(simd.load(org)));
         }
         let longest = simd.max_number(simd.max_number(size[0], size[1]), size[2]);
-        valid &= simd.bits(simd.le(simd.splat(f32::MIN_POSITIVE), longest));
-        valid
+        valid & simd.bits(simd.le(simd.splat(f32::MIN_POSITIVE), longest))
     }
 
-    /// The class of all rays, which are valid, if they have one in common.
+    /// The class of all rays, if they are valid and have one.
     #[inline(always)]
     pub(crate) fn class<S: Width<R>>(&self, simd: S) -> Option<Class> {
         let all = u32::MAX >> (32 - R);
+        if self.valid(simd) != all {
+            return None;
+        }
         let uniform = |lanes: u32| (lanes == 0 || lanes == all).then_some(lanes != 0);
-        let load = inlined(
-            #[inline(always)]
-            |column: &[f32; R]| simd.load(column),
-        );
-        let size = each(
-            [0, 1, 2_usize],
-            #[inline(always)]
-            |axis| simd.abs(load(&self.dir[axis])),
-        );
+        let size = self.sizes(simd);
         let not_less = inlined(
             #[inline(always)]
             |a: usize, b: usize| simd.bits(simd.le(size[b], size[a])),
@@ -227,7 +223,7 @@ impl<const R: usize> RayPacket<R> {
         let zero = simd.splat(0.0);
         let negative = inlined(
             #[inline(always)]
-            |axis: usize| uniform(simd.bits(simd.lt(load(&self.dir[axis]), zero))),
+            |axis: usize| uniform(simd.bits(simd.lt(simd.load(&self.dir[axis]), zero))),
         );
         let octant = [negative(0)?, negative(1)?, negative(2)?];
         Some(Class {

@@ -12,9 +12,9 @@ use crate::trace::best_hits::lanes;
 use crate::trace::goal::{AnyHit, ClosestHit, Goal};
 use crate::trace::packet::PacketKernel;
 
-/// The nearest hit of each ray, as [`closest_hit`](crate::closest_hit), of packets of `R` rays (4, 8, 16 or 32: the
-/// more, the faster). It pays where
-/// a packet's rays come from about one place and go in about one direction, as those through sixteen neighbours of an image do.
+/// The nearest hit of each ray, as [`closest_hit`](crate::closest_hit), of packets of `R` rays (4, 8, 16 or 32: the more, the
+/// faster). It pays where a packet's rays come from about one place and go in about one direction, as those through
+/// neighbours of an image do.
 /// Rays that are not [valid](crate::Ray::is_valid) hit nothing.
 ///
 /// # Panics
@@ -76,26 +76,21 @@ where
     where
         S: Width<N> + Width<P> + Width<R>,
     {
-        let all = u32::MAX >> (32 - R);
-        let valid = rays.valid(self.simd);
         match rays.class(self.simd) {
-            Some(class) if valid == all => self.trace(rays, all, class, hits),
-            _ => self.classes(rays, valid, hits),
+            Some(class) => self.trace(rays, u32::MAX >> (32 - R), class, hits),
+            None => self.classes(rays, hits),
         }
     }
 
-    /// Traces the rays of a packet whose bits are set, which are valid, class by class.
+    /// Traces the rays of a packet class by class.
     #[inline(always)]
-    fn classes<const R: usize>(&self, rays: &RayPacket<R>, valid: u32, hits: &mut HitPacket<R>)
+    fn classes<const R: usize>(&self, rays: &RayPacket<R>, hits: &mut HitPacket<R>)
     where
         S: Width<N> + Width<P> + Width<R>,
     {
         *hits = HitPacket::misses(rays);
-        let mut rest = valid;
-        for first in lanes(valid) {
-            if rest >> first & 1 == 0 {
-                continue;
-            }
+        let mut rest = rays.valid(self.simd);
+        while let Some(first) = lanes(rest).next() {
             let ray = rays.ray(first);
             let index = Class::index(&ray);
             let mut members = 0;

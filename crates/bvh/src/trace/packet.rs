@@ -68,9 +68,9 @@ where
     T: Packet<P>,
     G: Goal,
 {
-    /// Packets until few of their `R` rays agree, then single rays: a quarter of 32 or an eighth take 1.05 of the time.
+    /// Packets, however few of their rays agree.
     #[inline(always)]
-    pub(crate) fn hybrid<const R: usize>(
+    pub(crate) fn new(
         simd: S,
         precision: Pr,
         bvh: BvhView<'a, N, P, B, T>,
@@ -84,7 +84,22 @@ where
             filter,
             goal,
             is_moderate: bvh.is_moderate(),
+            few: 0,
+        }
+    }
+
+    /// Packets until few of their `R` rays agree, then single rays: a quarter of 32 or an eighth take 1.05 of the time.
+    #[inline(always)]
+    pub(crate) fn hybrid<const R: usize>(
+        simd: S,
+        precision: Pr,
+        bvh: BvhView<'a, N, P, B, T>,
+        filter: &'a F,
+        goal: G,
+    ) -> Self {
+        PacketKernel {
             few: 3 * R as u32 / 16,
+            ..PacketKernel::new(simd, precision, bvh, filter, goal)
         }
     }
 

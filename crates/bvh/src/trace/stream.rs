@@ -163,15 +163,7 @@ where
         filter: &impl HitFilter,
     ) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
-        let kernel = PacketKernel {
-            simd,
-            precision,
-            bvh,
-            filter,
-            goal: ClosestHit,
-            is_moderate: bvh.is_moderate(),
-            few: 0,
-        };
+        let kernel = PacketKernel::new(simd, precision, bvh, filter, ClosestHit);
         kernel.windows::<R>(rays, hits);
     }
 
@@ -186,15 +178,7 @@ where
         filter: &impl HitFilter,
     ) {
         assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
-        let kernel = PacketKernel {
-            simd,
-            precision,
-            bvh,
-            filter,
-            goal: AnyHit,
-            is_moderate: bvh.is_moderate(),
-            few: 0,
-        };
+        let kernel = PacketKernel::new(simd, precision, bvh, filter, AnyHit);
         kernel.windows::<R>(rays, occluded);
     }
 }

@@ -133,10 +133,9 @@ where
                 Some(rays) => RayPacket::of(self.simd, rays),
                 None => RayPacket::<R>::gather(rays, members),
             };
-            let are_valid = packet.valid(self.simd) == u32::MAX >> (32 - R);
             match packet.class(self.simd) {
-                Some(class) if are_valid => self.members(&packet, members, class, hits),
-                _ => self.sort::<R>(rays, hits),
+                Some(class) => self.members(&packet, members, class, hits),
+                None => self.sort::<R>(rays, hits),
             }
         }
     }

@@ -78,12 +78,12 @@ combinations!(best:
 );
 // For the lesser ones: the kernel that calls the others, in all precisions between them.
 combinations!(sse:
-    n4p4(4, 4): Fast [Hybrid::<4>];
+    n4p4(4, 4): Fast [Hybrid::<32>];
     n8p8(8, 8): Watertight [Hybrid::<8>];
 );
 combinations!(avx2:
     n4p4(4, 4): Exact [Hybrid::<4>];
-    n8p8(8, 8): Watertight [Hybrid::<8>];
+    n8p8(8, 8): Watertight [Hybrid::<32>];
 );
 
 /// A stream of rays and what they must hit.

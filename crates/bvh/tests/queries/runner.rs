@@ -148,16 +148,12 @@ where
         let packets: Vec<RayPacket<R>> = rays.chunks(R).map(RayPacket::of_rays).collect();
         let mut found = vec![0; packets.len()];
         any_hit_packets(simd, precision, bvh, &packets, &mut found, filter);
+        let is_hit = |index: usize| found[index / R] >> (index % R) & 1 == 1;
         for (index, occluded) in occluded.iter_mut().enumerate() {
-            *occluded = found[index / R] >> (index % R) & 1 == 1;
+            *occluded = is_hit(index);
         }
-        let beyond = found.last().map_or(0, |bits| {
-            bits.checked_shr((rays.len() % R) as u32).unwrap_or(0)
-        });
-        assert!(
-            rays.len().is_multiple_of(R) || beyond == 0,
-            "lanes without rays hit nothing"
-        );
+        let mut left_over = rays.len()..R * found.len();
+        assert!(!left_over.any(is_hit), "lanes without rays hit nothing");
     }
 }
 
