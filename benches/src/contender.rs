@@ -27,18 +27,83 @@ pub trait Prepared {
     fn hits(&self) -> usize;
 }
 
-/// A contender that streams rays in and hits out.
-pub struct Stream {
-    closest: Box<dyn Fn(&[Ray], &mut [Hit])>,
-    any: Box<dyn Fn(&[Ray], &mut [bool])>,
+/// What a contender is given: rays, laid out as it likes them.
+pub trait Layout: Sized {
+    /// A batch, in its order.
+    fn lay_out(rays: &[Ray]) -> Vec<Self>;
 }
 
-impl Stream {
+impl Layout for Ray {
+    fn lay_out(rays: &[Ray]) -> Vec<Ray> {
+        rays.to_vec()
+    }
+}
+
+impl<const R: usize> Layout for RayPacket<R> {
+    fn lay_out(rays: &[Ray]) -> Vec<Self> {
+        rays.chunks(R).map(RayPacket::of_rays).collect()
+    }
+}
+
+/// What a contender answers.
+pub trait Answer: Copy {
+    /// That there are no hits.
+    const NONE: Self;
+    /// How many there are.
+    fn hits(self) -> usize;
+}
+
+impl Answer for Hit {
+    const NONE: Hit = Hit {
+        t: 0.0,
+        u: 0.0,
+        v: 0.0,
+        prim: Hit::NONE,
+    };
+    fn hits(self) -> usize {
+        usize::from(self.is_hit())
+    }
+}
+
+impl Answer for bool {
+    const NONE: bool = false;
+    fn hits(self) -> usize {
+        usize::from(self)
+    }
+}
+
+impl<const R: usize> Answer for HitPacket<R> {
+    const NONE: Self = HitPacket {
+        t: [0.0; R],
+        u: [0.0; R],
+        v: [0.0; R],
+        prim: [Hit::NONE; R],
+    };
+    fn hits(self) -> usize {
+        HitPacket::hits(&self).count_ones() as usize
+    }
+}
+
+/// A bit for each ray of a packet.
+impl Answer for u32 {
+    const NONE: u32 = 0;
+    fn hits(self) -> usize {
+        self.count_ones() as usize
+    }
+}
+
+/// A contender that streams rays in and answers out: of rays one by one, as it stands here, or of packets in columns.
+pub struct Stream<R = Ray, H = Hit, O = bool> {
+    closest: Box<dyn Fn(&[R], &mut [H])>,
+    any: Box<dyn Fn(&[R], &mut [O])>,
+}
+
+impl<R, H, O> Stream<R, H, O> {
     /// From a function for nearest hits and one for occlusion.
     pub fn new(
-        closest: impl Fn(&[Ray], &mut [Hit]) + 'static,
-        any: impl Fn(&[Ray], &mut [bool]) + 'static,
-    ) -> Stream {
+        closest: impl Fn(&[R], &mut [H]) + 'static,
+        any: impl Fn(&[R], &mut [O]) + 'static,
+    ) -> Self {
         Stream {
             closest: Box::new(closest),
             any: Box::new(any),
@@ -46,111 +111,41 @@ impl Stream {
     }
 }
 
-impl Contender for Stream {
+impl<R: Layout, H: Answer, O: Answer> Contender for Stream<R, H, O> {
     fn prepare(&self, query: Query) -> Box<dyn Prepared + '_> {
         match query {
-            Query::Closest => Box::new(Batch {
-                trace: &*self.closest,
-                rays: Vec::new(),
-                answers: Vec::new(),
-                before: Hit::miss(0.0),
-                is_hit: Hit::is_hit,
-            }),
-            Query::Any => Box::new(Batch {
-                trace: &*self.any,
-                rays: Vec::new(),
-                answers: Vec::new(),
-                before: false,
-                is_hit: |&occluded| occluded,
-            }),
+            Query::Closest => Box::new(Batch::new(&*self.closest)),
+            Query::Any => Box::new(Batch::new(&*self.any)),
         }
     }
 }
 
-struct Batch<'a, T> {
-    trace: &'a dyn Fn(&[Ray], &mut [T]),
-    rays: Vec<Ray>,
-    answers: Vec<T>,
-    before: T,
-    is_hit: fn(&T) -> bool,
+struct Batch<'a, R, A> {
+    trace: &'a dyn Fn(&[R], &mut [A]),
+    rays: Vec<R>,
+    answers: Vec<A>,
 }
 
-impl<T: Copy> Prepared for Batch<'_, T> {
+impl<'a, R, A> Batch<'a, R, A> {
+    fn new(trace: &'a dyn Fn(&[R], &mut [A])) -> Self {
+        Batch {
+            trace,
+            rays: Vec::new(),
+            answers: Vec::new(),
+        }
+    }
+}
+
+impl<R: Layout, A: Answer> Prepared for Batch<'_, R, A> {
     fn load(&mut self, rays: &[Ray]) {
-        self.rays.clear();
-        self.rays.extend_from_slice(rays);
+        self.rays = R::lay_out(rays);
         self.answers.clear();
-        self.answers.resize(rays.len(), self.before);
+        self.answers.resize(self.rays.len(), A::NONE);
     }
     fn run(&mut self) {
         (self.trace)(&self.rays, &mut self.answers);
     }
     fn hits(&self) -> usize {
-        let is_hit = |answer: &&T| (self.is_hit)(answer);
-        self.answers.iter().filter(is_hit).count()
-    }
-}
-
-/// A contender that is given packets of `R` rays in columns, and answers in columns.
-pub struct Columns<const R: usize> {
-    closest: Box<dyn Fn(&[RayPacket<R>], &mut [HitPacket<R>])>,
-    any: Box<dyn Fn(&[RayPacket<R>], &mut [u32])>,
-}
-
-impl<const R: usize> Columns<R> {
-    /// From a function for nearest hits and one for occlusion.
-    pub fn new(
-        closest: impl Fn(&[RayPacket<R>], &mut [HitPacket<R>]) + 'static,
-        any: impl Fn(&[RayPacket<R>], &mut [u32]) + 'static,
-    ) -> Self {
-        Columns {
-            closest: Box::new(closest),
-            any: Box::new(any),
-        }
-    }
-}
-
-impl<const R: usize> Contender for Columns<R> {
-    fn prepare(&self, query: Query) -> Box<dyn Prepared + '_> {
-        match query {
-            Query::Closest => Box::new(PacketBatch {
-                trace: &*self.closest,
-                rays: Vec::new(),
-                answers: Vec::new(),
-                before: HitPacket::misses(&RayPacket::NONE),
-                hits: HitPacket::hits,
-            }),
-            Query::Any => Box::new(PacketBatch {
-                trace: &*self.any,
-                rays: Vec::new(),
-                answers: Vec::new(),
-                before: 0,
-                hits: |&bits| bits,
-            }),
-        }
-    }
-}
-
-struct PacketBatch<'a, T, const R: usize> {
-    trace: &'a dyn Fn(&[RayPacket<R>], &mut [T]),
-    rays: Vec<RayPacket<R>>,
-    answers: Vec<T>,
-    before: T,
-    hits: fn(&T) -> u32,
-}
-
-impl<T: Copy, const R: usize> Prepared for PacketBatch<'_, T, R> {
-    fn load(&mut self, rays: &[Ray]) {
-        self.rays.clear();
-        self.rays.extend(rays.chunks(R).map(RayPacket::of_rays));
-        self.answers.clear();
-        self.answers.resize(self.rays.len(), self.before);
-    }
-    fn run(&mut self) {
-        (self.trace)(&self.rays, &mut self.answers);
-    }
-    fn hits(&self) -> usize {
-        let hits = |answer| (self.hits)(answer).count_ones() as usize;
-        self.answers.iter().map(hits).sum()
+        self.answers.iter().map(|answer| answer.hits()).sum()
     }
 }

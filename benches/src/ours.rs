@@ -9,11 +9,12 @@ use std::rc::Rc;
 
 use clap::ValueEnum;
 use residual_bvh::{
-    AllHits, BuildQuality, Bvh, CompactBvh, Hybrid, Kernel as _, OneByOne, Packets, Phased, Single,
-    any_hit_packets, build, build_compact, closest_hit_packets,
+    AllHits, Boxes, BuildQuality, Bvh, BvhView, CompactBvh, HitFilter, HitPacket, Hybrid,
+    Kernel as _, OneByOne, Packet, Packets, Phased, RayPacket, Single, Width, any_hit_packets,
+    build, build_compact, closest_hit_packets,
 };
 
-use crate::contender::{Columns, Contender, Stream};
+use crate::contender::{Contender, Stream};
 use crate::isa::Isa;
 use crate::mesh::Mesh;
 use crate::on_isa;
@@ -102,6 +103,41 @@ pub struct Variant {
     pub make: fn(&Trees<'_>, Isa) -> Box<dyn Contender>,
 }
 
+/// Packets of `R` rays in columns, called as the kernels of streams are.
+struct InColumns<const R: usize>;
+
+impl<const R: usize> InColumns<R> {
+    #[inline(always)]
+    fn closest_hits<S, const N: usize, const P: usize>(
+        self,
+        simd: S,
+        precision: impl residual_bvh::Precision,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
+        rays: &[RayPacket<R>],
+        hits: &mut [HitPacket<R>],
+        filter: &impl HitFilter,
+    ) where
+        S: Width<N> + Width<P> + Width<R>,
+    {
+        closest_hit_packets(simd, precision, bvh, rays, hits, filter);
+    }
+
+    #[inline(always)]
+    fn any_hits<S, const N: usize, const P: usize>(
+        self,
+        simd: S,
+        precision: impl residual_bvh::Precision,
+        bvh: BvhView<'_, N, P, impl Boxes<N>, impl Packet<P>>,
+        rays: &[RayPacket<R>],
+        occluded: &mut [u32],
+        filter: &impl HitFilter,
+    ) where
+        S: Width<N> + Width<P> + Width<R>,
+    {
+        any_hit_packets(simd, precision, bvh, rays, occluded, filter);
+    }
+}
+
 /// All our kernels.
 pub fn variants() -> Vec<Variant> {
     macro_rules! variants {
@@ -129,32 +165,7 @@ pub fn variants() -> Vec<Variant> {
             }),*]
         };
     }
-    macro_rules! columns {
-        ($($tree:ident $n:literal x $p:literal, $precision:ident;)*) => {
-            vec![$(Variant {
-                kernel: Kernel::Columns,
-                width: $n,
-                triangle_packet: $p,
-                packet: 32,
-                precision: Precision::$precision,
-                make: |trees, isa| {
-                    let tree = trees.$tree::<$n, $p>();
-                    let same = tree.clone();
-                    Box::new(Columns::<32>::new(
-                        move |rays, hits| {
-                            on_isa!(isa, simd => closest_hit_packets(
-                                simd, residual_bvh::$precision, tree.bvh.view(), rays, hits, &AllHits))
-                        },
-                        move |rays, occluded| {
-                            on_isa!(isa, simd => any_hit_packets(
-                                simd, residual_bvh::$precision, same.bvh.view(), rays, occluded, &AllHits))
-                        },
-                    ))
-                },
-            }),*]
-        };
-    }
-    let mut all = variants![
+    variants![
         Single(Single, 1): get 4 x 4, Fast;
         Single(Single, 1): get 8 x 8, Fast;
         Single(Single, 1): get 16 x 8, Fast;
@@ -179,18 +190,15 @@ pub fn variants() -> Vec<Variant> {
         Hybrid(Hybrid::<32>, 32): get 16 x 16, Watertight;
         Compact(Hybrid::<32>, 32): compact 16 x 16, Fast;
         Compact(Hybrid::<32>, 32): compact 16 x 16, Watertight;
+        Columns(InColumns::<32>, 32): get 8 x 8, Fast;
+        Columns(InColumns::<32>, 32): get 8 x 8, Watertight;
+        Columns(InColumns::<32>, 32): compact 16 x 16, Fast;
+        Columns(InColumns::<32>, 32): compact 16 x 16, Watertight;
         Scalar(OneByOne, 1): get 2 x 1, Fast;
         Scalar(OneByOne, 1): get 4 x 4, Fast;
         Scalar(OneByOne, 1): get 8 x 8, Fast;
         Scalar(OneByOne, 1): get 16 x 16, Fast;
-    ];
-    all.extend(columns![
-        get 8 x 8, Fast;
-        get 8 x 8, Watertight;
-        compact 16 x 16, Fast;
-        compact 16 x 16, Watertight;
-    ]);
-    all
+    ]
 }
 
 /// What a build cost and gave.
